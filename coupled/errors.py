@@ -1,0 +1,27 @@
+"""The errors a user can cause; each message is one sentence that names the remedy."""
+
+from __future__ import annotations
+
+
+class LeitoError(Exception):
+    """An error of the input or of its surroundings, said in one sentence."""
+
+
+class SceneError(LeitoError):
+    """A scene file that is refused.
+
+    Parameters
+    ----------
+    sentence
+        What is wrong, with the key's path, its value, what is allowed and the remedy.
+    key
+        Dotted path of the key, e.g. ``"grains.sizes.0.radius"``; empty for the file as a whole.
+    """
+
+    def __init__(self, sentence: str, *, key: str = "") -> None:
+        super().__init__(sentence)
+        self.key = key
+
+
+class Interrupted(LeitoError):
+    """A run stopped by the user; the message says how to go on."""

@@ -1,0 +1,54 @@
+"""Scene files: strict TOML, typed tables, one sentence for whatever is wrong."""
+
+from coupled.errors import SceneError
+from coupled.scene.contact import Contact, Damping, Recipe
+from coupled.scene.find import find_scene, shipping_scenes
+from coupled.scene.grains import Box, Grains, SettledGrains, SizeClass
+from coupled.scene.interface import Interface, Row, RowUnder
+from coupled.scene.load import dump_scene, load_scene
+from coupled.scene.output import Output, Time
+from coupled.scene.scene import Scene
+from coupled.scene.shape import Beam, Tube
+from coupled.scene.structure import (
+    BodyLoad,
+    BoundaryLoad,
+    Initial,
+    Newmark,
+    Path,
+    Placement,
+    PointLoad,
+    Rayleigh,
+    Structure,
+)
+
+__all__ = [
+    "Beam",
+    "BodyLoad",
+    "BoundaryLoad",
+    "Box",
+    "Contact",
+    "Damping",
+    "Grains",
+    "Initial",
+    "Interface",
+    "Newmark",
+    "Output",
+    "Path",
+    "Placement",
+    "PointLoad",
+    "Rayleigh",
+    "Recipe",
+    "Row",
+    "RowUnder",
+    "Scene",
+    "SceneError",
+    "SettledGrains",
+    "SizeClass",
+    "Structure",
+    "Time",
+    "Tube",
+    "dump_scene",
+    "find_scene",
+    "load_scene",
+    "shipping_scenes",
+]

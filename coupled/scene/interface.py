@@ -1,0 +1,83 @@
+"""Tables of the glued grains and of the rows of fixed grains."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from coupled.scene.shape import Shape
+from coupled.scene.types import Count, Positive, Table, Vector
+
+
+class Interface(Table):
+    """Grains glued to the boundary of the structure: the door between both physics."""
+
+    kind: Literal["glued"] = Field("glued", description="kind of interface")
+    per_facet: Count | None = Field(
+        None, description="glued grains per facet: one on each node, the others between"
+    )
+    count: Count | None = Field(None, description="glued grains in all, instead of per_facet")
+    diameter: Positive | None = Field(
+        None, description="diameter of a glued grain [m]; absent: the smallest spacing"
+    )
+    boundaries: tuple[str, ...] = Field(
+        ("outer",), min_length=1, description="boundaries that carry glued grains"
+    )
+    velocity: Literal["shape", "mean"] = Field(
+        "shape", description="velocity of a glued grain: interpolated, or the facet's mean (G)"
+    )
+    exchange: Literal["predicted", "lagged"] = Field(
+        "predicted", description="order of the exchange: predicted interface, or G's lagged order"
+    )
+    substeps: Count = Field(1, description="grain steps per step of the structure")
+    largest_stiffness_ratio: Positive | None = Field(
+        None, description="stiffness ratio r above which a run is refused [-]"
+    )
+
+    def facet_lengths(self, shape: Shape) -> tuple[float, ...]:
+        """Return the lengths of all facets that carry glued grains [m]."""
+        return sum((shape.facet_lengths(name) for name in self.boundaries), ())
+
+    def grains_per_facet(self, shape: Shape) -> int:
+        """Return the number of glued grains per facet, derived from `count` when that is given.
+
+        A closed boundary has as many first nodes as facets, an open one has one more node.
+        """
+        if self.per_facet is not None:
+            return self.per_facet
+        assert self.count is not None, "the rules of the scene demand per_facet or count"
+        closed = "outer" in self.boundaries
+        return (self.count if closed else self.count - 1) // len(self.facet_lengths(shape))
+
+    def smallest_spacing(self, shape: Shape) -> float:
+        """Return the smallest distance between neighbouring glued grains [m]."""
+        return min(self.facet_lengths(shape)) / self.grains_per_facet(shape)
+
+
+class Row(Table):
+    """A row of fixed grains between two points."""
+
+    start: Vector = Field(description="centre of the first grain [m]")
+    end: Vector = Field(description="centre of the last grain [m]")
+    count: Count = Field(description="number of grains")
+    radius: Positive = Field(description="radius [m]")
+    velocity: Vector = Field((0.0, 0.0), description="constant velocity of the row [m/s]")
+
+
+class RowUnder(Table):
+    """A row of fixed grains, one exactly below each glued grain of a boundary, touching it."""
+
+    under: str = Field(description="boundary of the structure")
+    radius: Positive = Field(description="radius [m]")
+
+
+def _row_kind(data: Any) -> str:
+    under = "under" in data if isinstance(data, dict) else isinstance(data, RowUnder)
+    return "<under>" if under else "<between>"
+
+
+AnyRow = Annotated[
+    Annotated[Row, Tag("<between>")] | Annotated[RowUnder, Tag("<under>")],
+    Discriminator(_row_kind),
+]

@@ -1,0 +1,102 @@
+"""Rules of the free grains, their box and their bed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from coupled.scene.grains import Box, Grains
+from coupled.scene.refusal import Plain, missing, refusal
+
+if TYPE_CHECKING:
+    from coupled.scene.scene import Scene
+
+
+def check_grains(scene: Scene) -> None:
+    """Check that the grains fit their box, or that their bed can serve them."""
+    if scene.box is not None and len(set(scene.box.walls)) < len(scene.box.walls):
+        raise refusal("box.walls", list(scene.box.walls), "names a wall twice; name each once")
+    if isinstance(scene.grains, Grains):
+        if scene.bed is not None:
+            raise refusal("bed", {}, "needs grains.bed; give that name or remove [bed]")
+        _check_laid_out(scene.grains, scene.box)
+    elif scene.grains is not None:
+        _check_bed(scene, scene.grains.bed)
+    elif scene.bed is not None:
+        raise refusal("bed", {}, "serves no grains; add [grains] with bed, or remove [bed]")
+
+
+def _check_laid_out(grains: Grains, box: Box | None) -> None:
+    if grains.layout == "list":
+        _check_positions(grains, box)
+        return
+    if grains.positions:
+        raise refusal(
+            "grains.positions", Plain("[...]"), 'belongs to layout = "list"; remove it or set the layout'
+        )
+    if box is None:
+        raise missing("box", "grains on a lattice need its width and height; add [box]")
+    _check_size(grains, box)
+    capacity = grains.lattice_capacity(box)
+    if grains.count > capacity:
+        raise refusal(
+            "grains.sizes",
+            Plain(f"{grains.count} grains"),
+            f"more than the {capacity} that the lattice holds in the box of {box.width:g} x "
+            f"{box.height:g} m; enlarge box.height or take fewer or smaller grains",
+        )
+
+
+def _check_size(grains: Grains, box: Box) -> None:
+    for index, size in enumerate(grains.sizes):
+        if 2 * size.radius > min(box.width, box.height):
+            raise refusal(
+                f"grains.sizes.{index}.radius",
+                size.radius,
+                f"the grain is larger than the box of {box.width:g} x {box.height:g} m; "
+                "reduce the radius or enlarge the box",
+            )
+
+
+def _check_positions(grains: Grains, box: Box | None) -> None:
+    if len(grains.positions) != grains.count:
+        raise refusal(
+            "grains.positions",
+            Plain(f"{len(grains.positions)} rows"),
+            f"grains.sizes counts {grains.count} grains; give one row for each",
+        )
+    if box is None:
+        return
+    _check_size(grains, box)
+    radii = [size.radius for size in grains.sizes for _ in range(size.count)]
+    for index, (row, radius) in enumerate(zip(grains.positions, radii, strict=True)):
+        x, y = row[:2]
+        if not (radius <= x <= box.width - radius and radius <= y <= box.height - radius):
+            raise refusal(
+                f"grains.positions.{index}",
+                list(row),
+                f"the grain of radius {radius:g} m is not inside the box of {box.width:g} x "
+                f"{box.height:g} m; move it in",
+            )
+
+
+def _check_bed(scene: Scene, name: str) -> None:
+    bed = scene.bed
+    if bed is None:
+        raise missing("bed", f'the scene "{name}" that settles the grains; load it from its file')
+    if bed.grains is None or bed.structure is not None or bed.rows:
+        raise refusal(
+            "grains.bed",
+            name,
+            "a bed settles free grains and nothing else; name a scene with [grains] and "
+            "without [structure] and [[rows]]",
+        )
+    if bed.units != scene.units:
+        raise refusal("units", scene.units, f'the bed has units = "{bed.units}"; use the same')
+    own, settled = scene.box, bed.box
+    if own and settled and own.width < settled.width:
+        raise refusal(
+            "box.width",
+            own.width,
+            f"narrower than the bed's {settled.width:g} m, so grains would lie outside; widen it "
+            "or remove [box] to take the bed's",
+        )

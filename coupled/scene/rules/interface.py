@@ -1,0 +1,107 @@
+"""Rules of the glued grains and of the rows of fixed grains."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from coupled.scene.interface import Interface, RowUnder
+from coupled.scene.refusal import missing, nearest, refusal
+from coupled.scene.shape import Shape
+
+if TYPE_CHECKING:
+    from coupled.scene.scene import Scene
+
+
+def check_interface(scene: Scene) -> None:
+    """Check the glued grains against the shape that carries them."""
+    interface, structure = scene.interface, scene.structure
+    if interface is None or structure is None:
+        return
+    if scene.grains is None and not scene.rows and scene.box is None:
+        raise refusal(
+            "interface",
+            {},
+            "the glued grains have nothing to touch; add [grains], [[rows]] or [box]",
+        )
+    shape = structure.shape
+    _check_boundaries(interface, shape)
+    _check_number(interface, shape)
+    if interface.diameter is not None:
+        spacing = interface.smallest_spacing(shape)
+        # one part in 1e9: a diameter of exactly the spacing may be written with rounding
+        if interface.diameter > spacing * (1 + 1e-9):
+            raise refusal(
+                "interface.diameter",
+                interface.diameter,
+                f"glued grains {spacing:.6g} m apart would overlap; give at most that, or fewer "
+                "per facet",
+            )
+
+
+def _check_boundaries(interface: Interface, shape: Shape) -> None:
+    names = interface.boundaries
+    for index, name in enumerate(names):
+        if name not in shape.glueable:
+            raise refusal(
+                f"interface.boundaries.{index}",
+                name,
+                f"is no outer boundary of the shape; {nearest(name, shape.glueable)}",
+            )
+    if len(set(names)) < len(names) or ("outer" in names and len(names) > 1):
+        raise refusal(
+            "interface.boundaries",
+            list(names),
+            'names a boundary twice ("outer" is all of them); name each once',
+        )
+
+
+def _check_number(interface: Interface, shape: Shape) -> None:
+    per_facet, count = interface.per_facet, interface.count
+    if per_facet is not None and count is not None:
+        raise refusal(
+            "interface.count", count, f"is given together with per_facet = {per_facet}; keep one"
+        )
+    if count is None:
+        if per_facet is None:
+            raise missing("interface.per_facet", "say how many glued grains sit on each facet")
+        return
+    facets = len(interface.facet_lengths(shape))
+    if "outer" not in interface.boundaries and len(interface.boundaries) > 1:
+        raise refusal(
+            "interface.count", count, "is ambiguous on several boundaries; give per_facet instead"
+        )
+    open_end = 0 if "outer" in interface.boundaries else 1
+    if count <= open_end or (count - open_end) % facets:
+        raise refusal(
+            "interface.count",
+            count,
+            f"{facets} facets carry {open_end} plus a multiple of {facets} grains; give such a "
+            "number, or per_facet",
+        )
+
+
+def check_rows(scene: Scene) -> None:
+    """Check the rows of fixed grains."""
+    for index, row in enumerate(scene.rows):
+        if isinstance(row, RowUnder):
+            _check_under(scene, row.under, f"rows.{index}.under")
+        elif (row.count == 1) != (row.start == row.end):
+            raise refusal(
+                f"rows.{index}.count",
+                row.count,
+                "one grain needs end = start and several need a distance; change count or end",
+            )
+
+
+def _check_under(scene: Scene, under: str, key: str) -> None:
+    interface, structure = scene.interface, scene.structure
+    if interface is None or structure is None:
+        raise refusal(
+            key, under, "needs glued grains above; add [structure] and [interface] or give start"
+        )
+    covered = under in interface.boundaries or "outer" in interface.boundaries
+    if under not in structure.shape.glueable or not covered:
+        allowed = structure.shape.glueable if covered else interface.boundaries
+        raise refusal(
+            key, under, f"carries no glued grains; {nearest(under, allowed)}"
+        )

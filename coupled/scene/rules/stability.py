@@ -1,0 +1,40 @@
+"""The rule of the time step: not above the true limit of a single contact."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from coupled.scene.refusal import refusal
+
+if TYPE_CHECKING:
+    from coupled.scene.scene import Scene
+
+
+def check_step(scene: Scene) -> None:
+    """Refuse a step above ``2/omega`` of the smallest grain on one spring.
+
+    Normal: ``omega^2 = k_n/m``. Tangential, a disc free to spin: ``omega^2 = k_t (1/m + r^2/I)
+    = 3 k_t/m``. Rolling: ``omega^2 = k_r/I`` with ``I = m r^2/2``. These are necessary bounds: a
+    grain with several contacts needs a smaller step, and so the source recommends a quarter,
+    ``0.5 sqrt(m_min/k_n)`` (G 2.1.2). Without free grains there is no such limit. The stiffness
+    of a recipe is known only once it is evaluated, so such a scene is checked when it is built.
+    """
+    grains, contact = scene.first_grains, scene.contact
+    if grains is None or contact is None or contact.normal_stiffness is None:
+        return
+    mass, radius = grains.smallest_mass, grains.smallest_radius
+    limits = {"2 sqrt(m_min/k_n)": 2 * math.sqrt(mass / contact.normal_stiffness)}
+    if contact.tangential_stiffness is not None:
+        limits["2 sqrt(m_min/(3 k_t))"] = 2 * math.sqrt(mass / (3 * contact.tangential_stiffness))
+    if contact.rolling_stiffness is not None:
+        inertia = mass * radius**2 / 2
+        limits["2 sqrt(I_min/k_r)"] = 2 * math.sqrt(inertia / contact.rolling_stiffness)
+    formula, limit = min(limits.items(), key=lambda item: item[1])
+    if scene.time.step > limit:
+        raise refusal(
+            "time.step",
+            scene.time.step,
+            f"is above the stability limit {formula} = {limit:.3g} s of the smallest grain on one "
+            f"contact; choose at most {limit / 4:.3g} s",
+        )

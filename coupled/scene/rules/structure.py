@@ -1,0 +1,151 @@
+"""Rules of the structure: material, shape, place, loads and path."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from coupled.scene.refusal import Plain, missing, nearest, refusal
+from coupled.scene.structure import BoundaryLoad, Newmark, Structure
+
+if TYPE_CHECKING:
+    from coupled.scene.scene import Scene
+
+_Kind = Literal["elastic", "rigid", "free_rigid"]
+_NEEDED: dict[_Kind, tuple[str, ...]] = {
+    "elastic": ("density", "youngs_modulus", "poissons_ratio"),
+    "rigid": ("path",),
+    "free_rigid": ("density",),
+}
+_ALLOWED: dict[_Kind, tuple[str, ...]] = {
+    "elastic": (*_NEEDED["elastic"], "rayleigh", "newmark", "loads", "initial"),
+    "rigid": ("path", "density"),
+    "free_rigid": ("density", "loads"),
+}
+_OPTIONAL = (*_ALLOWED["elastic"], "path")
+
+
+def check_structure(scene: Scene) -> None:
+    """Check that the structure is complete, has one shape, and stands inside the box."""
+    structure = scene.structure
+    if structure is None:
+        return
+    _check_kind(structure)
+    _check_shape(structure)
+    _check_loads(structure)
+    if structure.newmark is not None:
+        _check_newmark(structure.newmark)
+    if structure.path is not None:
+        _check_path(structure.path.points)
+    _check_placement(scene, structure)
+
+
+def _check_kind(structure: Structure) -> None:
+    kind = structure.kind
+    for name in _NEEDED[kind]:
+        if getattr(structure, name) is None:
+            meaning = Structure.model_fields[name].description
+            raise missing(f"structure.{name}", f'kind = "{kind}" needs it ({meaning}); add it')
+    for name in _OPTIONAL:
+        if name not in _ALLOWED[kind] and getattr(structure, name) not in (None, ()):
+            value = getattr(structure, name)
+            shown = value if isinstance(value, float) else Plain("...")
+            raise refusal(
+                f"structure.{name}",
+                shown,
+                f'means nothing for kind = "{kind}"; remove it or change structure.kind',
+            )
+
+
+def _check_shape(structure: Structure) -> None:
+    tube, beam = structure.tube, structure.beam
+    if tube is not None and beam is not None:
+        raise refusal(
+            "structure.beam", {}, "is given together with structure.tube; keep one of them"
+        )
+    if tube is None and beam is None:
+        raise missing("structure.tube", "a structure needs a shape; add it or [structure.beam]")
+    if tube is not None and tube.inner_radius >= tube.outer_radius:
+        raise refusal(
+            "structure.tube.inner_radius",
+            tube.inner_radius,
+            f"must be less than outer_radius = {tube.outer_radius:g} m; reduce it",
+        )
+
+
+def _check_loads(structure: Structure) -> None:
+    known = structure.shape.boundaries
+    for index, load in enumerate(structure.loads):
+        if isinstance(load, BoundaryLoad) and load.boundary not in known:
+            raise refusal(
+                f"structure.loads.{index}.boundary",
+                load.boundary,
+                f"the shape has no such boundary; {nearest(load.boundary, known)}",
+            )
+
+
+def _check_newmark(newmark: Newmark) -> None:
+    beta, gamma = newmark.beta, newmark.gamma
+    if gamma < 0.5:
+        raise refusal("structure.newmark.gamma", gamma, "is unstable; give at least 0.5")
+    least = (0.5 + gamma) ** 2 / 4
+    if beta < least:
+        raise refusal(
+            "structure.newmark.beta",
+            beta,
+            f"is not unconditionally stable with gamma = {gamma:g}; give at least {least:g}",
+        )
+
+
+def _check_path(points: tuple[tuple[float, float, float], ...]) -> None:
+    if points[0] != (0.0, 0.0, 0.0):
+        raise refusal(
+            "structure.path.points.0",
+            list(points[0]),
+            "a path starts at time 0 without displacement; give [0.0, 0.0, 0.0]",
+        )
+    for index in range(1, len(points)):
+        if points[index][0] <= points[index - 1][0]:
+            raise refusal(
+                f"structure.path.points.{index}",
+                list(points[index]),
+                f"its time must be later than {points[index - 1][0]:g} s; times increase",
+            )
+
+
+def _check_placement(scene: Scene, structure: Structure) -> None:
+    place, box = structure.placement, scene.box
+    on_bed = place.y == "on_bed"
+    floor = box is not None and "floor" in box.walls
+    if on_bed and scene.grains is None and not floor:
+        raise refusal(
+            "structure.placement.y", "on_bed", "needs grains or a floor below; give a number in m"
+        )
+    if place.gap > 0 and not on_bed:
+        raise refusal(
+            "structure.placement.gap", place.gap, 'only counts with y = "on_bed"; remove it'
+        )
+    if box is None:
+        return
+    glued = _glued_radius(scene, structure)
+    half_width, half_height = (extent + glued for extent in structure.shape.half_extent)
+    points = structure.path.points if structure.path is not None else ((0.0, 0.0, 0.0),)
+    spans = [("x", place.x, half_width, box.width, [row[1] for row in points])]
+    if not isinstance(place.y, str):
+        spans.append(("y", place.y, half_height, box.height, [row[2] for row in points]))
+    for axis, centre, half, size, moves in spans:
+        low, high = centre - half + min(moves), centre + half + max(moves)
+        if low < 0 or high > size:
+            raise refusal(
+                f"structure.placement.{axis}",
+                centre,
+                f"the structure would reach from {low:g} to {high:g} m, outside the box of "
+                f"0 to {size:g} m; move it or enlarge the box",
+            )
+
+
+def _glued_radius(scene: Scene, structure: Structure) -> float:
+    """Return the radius of a glued grain where it is given [m]."""
+    interface = scene.interface
+    if interface is None or interface.diameter is None:
+        return 0.0
+    return interface.diameter / 2

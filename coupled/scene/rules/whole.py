@@ -1,0 +1,52 @@
+"""Which tables need which others."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from coupled.scene.refusal import missing, refusal
+
+if TYPE_CHECKING:
+    from coupled.scene.scene import Scene
+
+
+def check_whole(scene: Scene) -> None:
+    """Check that there is something to compute and that no table hangs in the air."""
+    if scene.grains is None and scene.structure is None:
+        raise missing("grains", "a scene needs grains or a structure; add [grains] or [structure]")
+    if scene.interface is not None and scene.structure is None:
+        raise missing(
+            "structure",
+            "glued grains need a structure to sit on; add [structure] or remove [interface]",
+        )
+    if scene.structure is not None and scene.interface is None:
+        for key, there in (("grains", scene.grains is not None), ("rows", bool(scene.rows))):
+            if there:
+                raise missing(
+                    "interface",
+                    f"a structure meets {key} only through glued grains; add [interface] "
+                    f"or remove [{key}]",
+                )
+    if scene.damping is not None and scene.grains is None:
+        raise refusal("damping", {}, "acts on free grains alone; add [grains] or remove it")
+    bodies = scene.grains is not None or scene.interface is not None
+    if bodies and scene.contact is None:
+        raise missing("contact", "grains need a contact law; add [contact] with normal_stiffness")
+    if scene.contact is not None and not bodies:
+        raise refusal("contact", {}, "has nothing to act on; add [grains] or remove it")
+
+
+def check_output(scene: Scene) -> None:
+    """Check times against each other."""
+    time, output = scene.time, scene.output
+    if time.step > time.duration:
+        reason = f"is longer than time.duration = {time.duration:g} s; choose a smaller step"
+        raise refusal("time.step", time.step, reason)
+    if time.stop_at_rest is not None and (scene.grains is None or not any(scene.gravity)):
+        reason = "measures free grains under gravity; remove it, or add [grains] and gravity"
+        raise refusal("time.stop_at_rest", time.stop_at_rest, reason)
+    for name in ("history_interval", "checkpoint_interval"):
+        value = getattr(output, name)
+        if value is not None and value < time.step:
+            reason = f"is shorter than time.step = {time.step:g} s; choose at least one step"
+            raise refusal(f"output.{name}", value, reason)

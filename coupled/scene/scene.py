@@ -1,0 +1,66 @@
+"""The scene: every table of a scene file, typed and checked against each other."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from coupled.scene.contact import Contact, Damping
+from coupled.scene.grains import AnyGrains, Box, Grains
+from coupled.scene.interface import AnyRow, Interface
+from coupled.scene.output import Output, Time
+from coupled.scene.rules import check_rules
+from coupled.scene.structure import Structure
+from coupled.scene.types import Table, Vector
+
+
+class Scene(Table):
+    """A whole case. A table that is absent is not modelled.
+
+    Lengths in m, masses in kg, times in s, forces in N per m of thickness, unless `units` says
+    that the numbers are dimensionless. x points right, y up, rotation is counter-clockwise.
+    """
+
+    title: Annotated[str, Field(min_length=1)] = Field(description="one line that says what it is")
+    units: Literal["SI", "dimensionless"] = Field("SI", description="units of all numbers")
+    gravity: Vector = Field((0.0, 0.0), description="acceleration of gravity [m/s2]")
+    time: Time = Field(description="duration and step")
+    box: Box | None = Field(None, description="rigid walls")
+    grains: AnyGrains | None = Field(None, description="free grains")
+    contact: Contact | None = Field(None, description="contact law")
+    damping: Damping | None = Field(None, description="global damping of the grains")
+    structure: Structure | None = Field(None, description="structure")
+    interface: Interface | None = Field(None, description="glued grains")
+    rows: tuple[AnyRow, ...] = Field((), description="rows of fixed grains")
+    output: Output = Field(default_factory=Output, description="what is written")
+    bed: Scene | None = Field(
+        None, description="the scene that grains.bed names, whole; read from its file when absent"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _write_checkpoint_interval(cls, data: Any) -> Any:
+        """Write the checkpoint interval, a tenth of the duration, when it is not given."""
+        if not isinstance(data, dict):
+            return data
+        time, output = data.get("time"), data.get("output", {})
+        if not isinstance(time, dict) or not isinstance(output, dict):
+            return data
+        duration, step = time.get("duration"), time.get("step")
+        if isinstance(duration, (int, float)) and isinstance(step, (int, float)):
+            interval = max(duration / 10, step)
+            return {**data, "output": {"checkpoint_interval": interval, **output}}
+        return data
+
+    @model_validator(mode="after")
+    def _tables_agree(self) -> Scene:
+        check_rules(self)
+        return self
+
+    @property
+    def first_grains(self) -> Grains | None:
+        """The table that lays the free grains out: this scene's, or its bed's."""
+        if isinstance(self.grains, Grains):
+            return self.grains
+        return self.bed.first_grains if self.bed is not None else None

@@ -1,0 +1,127 @@
+"""Tables of the structure: material, place, loads, prescribed path."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from coupled.scene.shape import Beam, Shape, Tube
+from coupled.scene.types import Count, NonNegative, Number, Positive, Table, Vector
+
+
+class Placement(Table):
+    """Where the centroid of the structure starts."""
+
+    x: Number = Field(0.0, description="centroid [m]")
+    y: Number | Literal["on_bed"] = Field(
+        0.0, description="centroid [m], or 'on_bed': lowered until it touches a grain or the floor"
+    )
+    gap: NonNegative = Field(0.0, description="extra height above the bed [m]")
+
+
+class Rayleigh(Table):
+    """Rayleigh damping ``C = c_a M + c_b K``."""
+
+    mass_factor: NonNegative = Field(0.0, description="c_a [1/s]")
+    stiffness_factor: NonNegative = Field(0.0, description="c_b [s]")
+
+
+class Newmark(Table):
+    """Parameters of Newmark's scheme (G calls them alpha and delta)."""
+
+    beta: Positive = Field(0.25, description="beta [-]")
+    gamma: Positive = Field(0.5, description="gamma [-]")
+
+
+class BoundaryLoad(Table):
+    """A force spread evenly over the length of a boundary."""
+
+    kind: Literal["boundary"] = "boundary"
+    boundary: str = Field(description="name of the loaded boundary")
+    total_force: Vector = Field(description="resultant [N per m of thickness]")
+    ramp_time: NonNegative = Field(0.0, description="time to reach the full force [s]")
+
+
+class BodyLoad(Table):
+    """A uniform acceleration of the whole structure, such as its own weight."""
+
+    kind: Literal["body"] = "body"
+    acceleration: Vector = Field(description="acceleration [m/s2]")
+    ramp_time: NonNegative = Field(0.0, description="time to reach the full load [s]")
+
+
+class PointLoad(Table):
+    """A force on the boundary node nearest to a point."""
+
+    kind: Literal["point"] = "point"
+    point: Vector = Field(description="point relative to the centroid of the shape [m]")
+    force: Vector = Field(description="force [N per m of thickness]")
+    ramp_time: NonNegative = Field(0.0, description="time to reach the full force [s]")
+
+
+def _load_kind(data: Any) -> str | None:
+    kind = data.get("kind") if isinstance(data, dict) else getattr(data, "kind", None)
+    return f"<{kind}>" if kind in ("boundary", "body", "point") else None
+
+
+Load = Annotated[
+    Annotated[BoundaryLoad, Tag("<boundary>")]
+    | Annotated[BodyLoad, Tag("<body>")]
+    | Annotated[PointLoad, Tag("<point>")],
+    Discriminator(
+        _load_kind,
+        custom_error_type="unknown_kind",
+        custom_error_message="unknown kind",
+        custom_error_context={"allowed": ["boundary", "body", "point"]},
+    ),
+]
+
+
+class Path(Table):
+    """Prescribed motion, linear between way points, at rest after the last one."""
+
+    points: tuple[tuple[Number, Number, Number], ...] = Field(
+        min_length=2, description="rows [time s, displacement x m, displacement y m]"
+    )
+
+
+class Initial(Table):
+    """Release from a free vibration mode."""
+
+    mode: Count = Field(1, description="number of the elastic mode, 1 is the lowest")
+    amplitude: Positive = Field(1e-3, description="largest displacement [m]")
+
+
+class Structure(Table):
+    """A structure: elastic (FEM), rigid along a path, or a free rigid body."""
+
+    kind: Literal["elastic", "rigid", "free_rigid"] = Field(description="mechanical model")
+    density: Positive | None = Field(None, description="mass per volume [kg/m3]")
+    youngs_modulus: Positive | None = Field(None, description="Young's modulus E [Pa]")
+    poissons_ratio: Annotated[Number, Field(gt=-1, lt=0.5)] | None = Field(
+        None, description="Poisson's ratio nu [-]"
+    )
+    tube: Tube | None = Field(None, description="a ring")
+    beam: Beam | None = Field(None, description="a rectangle")
+    placement: Placement = Field(default_factory=Placement, description="start of the centroid")
+    rayleigh: Rayleigh | None = Field(None, description="damping of the material")
+    newmark: Newmark | None = Field(None, description="parameters of the time integration")
+    loads: tuple[Load, ...] = Field((), description="external loads")
+    path: Path | None = Field(None, description="prescribed motion of a rigid structure")
+    initial: Initial | None = Field(None, description="initial deformation")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _write_newmark(cls, data: Any) -> Any:
+        """Write the scheme of an elastic structure when it is not given."""
+        if isinstance(data, dict) and data.get("kind") == "elastic" and "newmark" not in data:
+            return {**data, "newmark": {}}
+        return data
+
+    @property
+    def shape(self) -> Shape:
+        """The tube or the beam, whichever is given."""
+        shape = self.tube or self.beam
+        assert shape is not None, "the rules of the scene demand exactly one shape"
+        return shape

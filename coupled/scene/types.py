@@ -1,0 +1,39 @@
+"""Number types of the scene file and the base class of its tables.
+
+TOML already tells numbers from strings, so a string is never read as a number here.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, Strict, model_validator
+from pydantic_core import PydanticCustomError
+
+Number = Annotated[float, Strict()]
+Positive = Annotated[float, Strict(), Field(gt=0)]
+NonNegative = Annotated[float, Strict(), Field(ge=0)]
+Fraction = Annotated[float, Strict(), Field(ge=0, le=1)]
+Count = Annotated[int, Strict(), Field(ge=1)]
+Whole = Annotated[int, Strict(), Field(ge=0)]
+Flag = Annotated[bool, Strict()]
+Vector = tuple[Number, Number]
+
+
+class Table(BaseModel):
+    """A table of the scene file: frozen, finite numbers only, no key that it does not know."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys_only(cls, data: Any) -> Any:
+        """Refuse an unknown key here, where the allowed ones are at hand for a suggestion."""
+        if isinstance(data, dict):
+            unknown = [key for key in data if key not in cls.model_fields]
+            if unknown:
+                allowed = list(cls.model_fields)
+                raise PydanticCustomError(
+                    "unknown_key", "unknown key", {"unknown": unknown[0], "allowed": allowed}
+                )
+        return data
