@@ -1,0 +1,143 @@
+"""Contact forces of one block of grains: its pairs, then its walls."""
+
+import math
+
+from particles.kernels.jit import kernel
+from particles.kernels.laws import respond
+from particles.kernels.layout import NO_RESPONSE, WALL_WORK, Meeting
+from particles.kernels.losses import record
+
+
+@kernel
+def clear_forces(b, grains):
+    for i in range(grains.block_start[b], grains.block_start[b + 1]):
+        grains.fx[i] = 0.0
+        grains.fy[i] = 0.0
+        grains.torque[i] = 0.0
+
+
+@kernel
+def losses_of(b, ledger):
+    """The row of losses of block `b`, or nothing."""
+    if ledger is not None:
+        return ledger.loss[b]
+    return None
+
+
+@kernel
+def remembers(k, spring, moment, tangential, dashpots, ledger):
+    """Whether slot `k` touched one step ago, so that it has something to let go."""
+    if ledger is not None:
+        if dashpots[k, 0] != 0.0:
+            return True
+    if tangential is not None:
+        return spring[k] != 0.0 or moment[k] != 0.0
+    return False
+
+
+@kernel
+def pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt):
+    """Forces of the pairs that block `b` owns (model 1.1, 1.2; lever arms to mid-overlap)."""
+    first, last = grains.block_start[b], grains.block_start[b + 1]
+    x, y, vx, vy, omega = grains.x, grains.y, grains.vx, grains.vy, grains.omega
+    radius, compliance = grains.radius, grains.roll_compliance
+    fx, fy, torque = grains.fx, grains.fy, grains.torque
+    start, partner, spring, moment = pairs.start, pairs.partner, pairs.spring, pairs.moment
+    crossing, cross = pairs.crossing, pairs.crossing_start[b]
+    dashpots, loss = pairs.dashpots, losses_of(b, ledger)
+    for i in range(first, last):
+        xi, yi, ri = x[i], y[i], radius[i]
+        fxi = fyi = ti = 0.0
+        for k in range(start[i], start[i + 1]):
+            j = partner[k]
+            dx, dy, reach = x[j] - xi, y[j] - yi, ri + radius[j]
+            d2 = dx * dx + dy * dy
+            touching = d2 < reach * reach
+            px = py = tj = 0.0
+            if touching or remembers(k, spring, moment, tangential, dashpots, ledger):
+                d = math.sqrt(d2)
+                nx, ny, delta = dx / d, dy / d, reach - d
+                ux, uy = vx[j] - vx[i], vy[j] - vy[i]
+                arm_i = arm_j = v_t = omega_r = 0.0
+                if tangential is not None:
+                    arm_i, arm_j = ri - 0.5 * delta, radius[j] - 0.5 * delta
+                    v_t = uy * nx - ux * ny - (arm_i * omega[i] + arm_j * omega[j])
+                    omega_r = omega[i] - omega[j]
+                meeting = Meeting(
+                    delta, ux * nx + uy * ny, v_t, omega_r, ri * radius[j] / reach, compliance[i] + compliance[j]
+                )
+                response = NO_RESPONSE
+                if touching:
+                    response = respond(normal, tangential, rolling, meeting, spring[k], moment[k], dt)
+                if ledger is not None:
+                    record(loss, dashpots[k], tangential, rolling, meeting, response, spring[k], moment[k], dt)
+                if tangential is not None:
+                    spring[k], moment[k] = response.spring, response.moment
+                px = -response.f_n * nx - response.f_t * ny
+                py = -response.f_n * ny + response.f_t * nx
+                ti += arm_i * response.f_t + response.m_t
+                tj = arm_j * response.f_t - response.m_t
+            fxi += px
+            fyi += py
+            if j < last:
+                fx[j] -= px
+                fy[j] -= py
+                torque[j] += tj
+            else:
+                crossing[cross, 0] = -px
+                crossing[cross, 1] = -py
+                crossing[cross, 2] = tj
+                cross += 1
+        fx[i] += fxi
+        fy[i] += fyi
+        torque[i] += ti
+
+
+@kernel
+def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
+    """Forces of the walls on block `b`: the same laws, the wall as a body of infinite mass."""
+    px, py, wnx, wny, wvx, wvy = walls.px, walls.py, walls.nx, walls.ny, walls.vx, walls.vy
+    x, y, vx, vy, omega = grains.x, grains.y, grains.vx, grains.vy, grains.omega
+    radius, compliance = grains.radius, grains.roll_compliance
+    spring, moment, force = walls.spring, walls.moment, walls.force
+    dashpots, loss = walls.dashpots, losses_of(b, ledger)
+    wall_work(b, walls, loss, dt)
+    for w in range(px.shape[0]):
+        force[b, w, 0] = force[b, w, 1] = 0.0
+    for k in range(walls.block[b], walls.block[b + 1]):
+        i, w = walls.grain[k], walls.wall[k]
+        nx, ny, ri = -wnx[w], -wny[w], radius[i]
+        delta = ri + (x[i] - px[w]) * nx + (y[i] - py[w]) * ny
+        touching = delta > 0.0
+        if not (touching or remembers(k, spring, moment, tangential, dashpots, ledger)):
+            continue
+        ux, uy = wvx[w] - vx[i], wvy[w] - vy[i]
+        arm = v_t = omega_r = 0.0
+        if tangential is not None:
+            arm, omega_r = ri - 0.5 * delta, omega[i]
+            v_t = uy * nx - ux * ny - arm * omega[i]
+        meeting = Meeting(delta, ux * nx + uy * ny, v_t, omega_r, ri, compliance[i])
+        response = NO_RESPONSE
+        if touching:
+            response = respond(normal, tangential, rolling, meeting, spring[k], moment[k], dt)
+        if ledger is not None:
+            record(loss, dashpots[k], tangential, rolling, meeting, response, spring[k], moment[k], dt)
+        if tangential is not None:
+            spring[k], moment[k] = response.spring, response.moment
+        fx = -response.f_n * nx - response.f_t * ny
+        fy = -response.f_n * ny + response.f_t * nx
+        grains.fx[i] += fx
+        grains.fy[i] += fy
+        grains.torque[i] += arm * response.f_t + response.m_t
+        force[b, w, 0] -= fx
+        force[b, w, 1] -= fy
+    wall_work(b, walls, loss, dt)
+
+
+@kernel
+def wall_work(b, walls, loss, dt):
+    """Half a step of the work done by moving walls on the grains of block `b`."""
+    if loss is not None:
+        for w in range(walls.vx.shape[0]):
+            power = walls.force[b, w, 0] * walls.vx[w] + walls.force[b, w, 1] * walls.vy[w]
+            loss[WALL_WORK] -= 0.5 * dt * power

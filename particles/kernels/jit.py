@@ -1,0 +1,49 @@
+"""The one owner of the compiler settings of all kernels.
+
+Numba's disk cache looks at the file of the compiled function alone: it keeps stale machine
+code when a *callee in another file* changes. The cache folder is therefore named after a hash
+of the sources of all kernels, so that any edit starts a fresh one. No fast-math flag is set: the same bits must come out of the
+serial and the threaded build of a loop.
+"""
+
+import hashlib
+import os
+import platform
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+from numba.core import config
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def _cache_folder() -> Path:
+    digest = hashlib.sha256(f"{numba.__version__} {platform.python_version()}".encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "leito" / "kernels" / digest.hexdigest()[:16]
+
+
+CACHE_FOLDER = _cache_folder()
+
+
+def _compiled(function: Function, *, parallel: bool) -> Function:
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(CACHE_FOLDER)
+    try:
+        return numba.njit(cache=True, parallel=parallel, error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = before
+
+
+def kernel(function: Function) -> Function:
+    """Compile a function for one thread, cached on disk."""
+    return _compiled(function, parallel=False)
+
+
+def threaded_kernel(function: Function) -> Function:
+    """Compile a function whose `prange` loops run on threads, cached on disk."""
+    return _compiled(function, parallel=True)

@@ -1,0 +1,77 @@
+"""Contact laws of one pair: pure functions of numbers. Signs and sources: `particles.contact`."""
+
+import math
+
+from particles.kernels.jit import kernel
+from particles.kernels.layout import Response
+
+
+@kernel
+def linear_normal(law, delta, v_n):
+    """Spring-dashpot, repulsive unless it may pull (model 1.2). Returns F_n and the dashpot's part."""
+    spring = law.k_n * delta
+    f_n = spring - law.c_n * v_n
+    if f_n < 0.0 and not law.may_pull:
+        f_n = 0.0
+    return f_n, f_n - spring
+
+
+@kernel
+def coulomb_tangential(law, f_old, v_t, f_n, dt):
+    """Regularised Coulomb friction (model 1.2, G 2.1.7). Returns the spring and F_t."""
+    limit = law.mu * abs(f_n)
+    f = f_old + law.k_t * v_t * dt
+    if abs(f) > limit:
+        f = math.copysign(limit, f)
+        return f, f
+    f_t = f + law.c_t * v_t
+    if abs(f_t) > limit:
+        f_t = math.copysign(limit, f_t)
+    return f, f_t
+
+
+@kernel
+def rolling_stiffness(law, k_t, r_r):
+    if law.k_r > 0.0:
+        return law.k_r
+    return k_t * r_r * r_r
+
+
+@kernel
+def elastic_plastic_rolling(law, k_r, compliance, m_old, omega_r, limit, dt):
+    """Elastic-plastic rolling resistance (model 1.2, G 2.1.8). Returns the spring and M on i."""
+    m = m_old - k_r * omega_r * dt
+    if abs(m) > limit:
+        m = math.copysign(limit, m)
+        return m, m
+    m_t = m
+    if law.eta_r > 0.0:
+        m_t -= 2.0 * law.eta_r * math.sqrt(k_r / compliance) * omega_r
+        if abs(m_t) > limit:
+            m_t = math.copysign(limit, m_t)
+    return m, m_t
+
+
+@kernel
+def time_in_contact(delta, v_n, dt):
+    """Part of the step spent in contact: a contact born within it starts with zero springs."""
+    if delta < -v_n * dt:
+        return delta / -v_n
+    return dt
+
+
+@kernel
+def respond(normal, tangential, rolling, meeting, f_old, m_old, dt):
+    """All laws of one touching pair. A law that is `None` is not compiled."""
+    f_n, dash_n = linear_normal(normal, meeting.delta, meeting.v_n)
+    f = f_t = m = m_t = 0.0
+    if tangential is not None:
+        held = time_in_contact(meeting.delta, meeting.v_n, dt)
+        f, f_t = coulomb_tangential(tangential, f_old, meeting.v_t, f_n, held)
+        if rolling is not None:
+            k_r = rolling_stiffness(rolling, tangential.k_t, meeting.r_r)
+            limit = rolling.mu_r * meeting.r_r * abs(f_n)
+            m, m_t = elastic_plastic_rolling(
+                rolling, k_r, meeting.compliance, m_old, meeting.omega_r, limit, held
+            )
+    return Response(f_n, f_t, m_t, f, m, dash_n, f_t - f, m_t - m)

@@ -1,0 +1,133 @@
+"""The groups of arrays and numbers that walk through the kernels together.
+
+Grains are ordered: the free ones first, sorted by cell, then the prescribed ones (glued grains,
+rows), whose order never changes. Free grains are cut into blocks whose number depends on their
+count alone; the prescribed ones are the last block. A block scatters forces inside itself and
+leaves those on grains of later blocks in `crossing`, so that every sum has one order, whatever
+the number of threads.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+Array = np.ndarray
+
+# Columns of LedgerArrays.loss [J/m]
+NORMAL_DASHPOT, TANGENTIAL_DASHPOT, SLIDING, ROLLING_DASHPOT, ROLLING_SLIP = 0, 1, 2, 3, 4
+GLOBAL_DAMPING, DAMPING_AHEAD, PRESCRIBED_WORK, WALL_WORK = 5, 6, 7, 8
+LEDGER_COLUMNS = 9
+
+
+class GrainArrays(NamedTuple):
+    """State of all grains; n of them, the first `n_free` integrated."""
+
+    x: Array  # (n,) position at the integer step
+    y: Array
+    theta: Array
+    vx: Array  # (n,) velocity at the half step that follows the position
+    vy: Array
+    omega: Array
+    fx: Array  # (n,) contact forces and torque at the integer step
+    fy: Array
+    torque: Array
+    radius: Array
+    mass: Array
+    inertia: Array
+    roll_compliance: Array  # (n,) 1/(I + m r^2), 0 for a prescribed grain
+    x_listed: Array  # (n,) position when the contact list was made
+    y_listed: Array
+    impulse: Array  # (n_prescribed, 2) contact impulse received since it was cleared [N s/m]
+    block_start: Array  # (n_blocks + 1,) first grain of each block; the last block is prescribed
+
+
+class PairArrays(NamedTuple):
+    """Half list of near pairs, by rows of the lower index, and their history."""
+
+    start: Array  # (n + 1,) first slot of each row
+    partner: Array  # (n_slots,) int32
+    spring: Array  # (n_slots,) tangential spring f [N/m]
+    moment: Array  # (n_slots,) rolling spring M on the lower index [N]
+    dashpots: Array  # (n_slots, 3) forces of the step before: normal, tangential, rolling; for the ledger
+    crossing_start: Array  # (n_blocks + 1,)
+    crossing: Array  # (n_crossing, 3) force x, y and torque on the partner
+    incoming_grain: Array  # (n_incoming,) grains hit from earlier blocks, ascending
+    incoming_start: Array  # (n_incoming + 1,)
+    incoming: Array  # (n_crossing,) numbers in `crossing`
+    incoming_block: Array  # (n_blocks + 1,) first of `incoming_grain` in each block
+
+
+class WallArrays(NamedTuple):
+    """Half planes with inward unit normals, and the grains near them."""
+
+    px: Array  # (n_walls,) a point of the wall
+    py: Array
+    nx: Array
+    ny: Array
+    vx: Array
+    vy: Array
+    px_listed: Array  # (n_walls,) the point when the near grains were listed
+    py_listed: Array
+    force: Array  # (n_blocks, n_walls, 2) force of the grains on the wall
+    grain: Array  # (n_near,) int32
+    wall: Array  # (n_near,) int32
+    block: Array  # (n_blocks + 1,) first near pair of each block
+    spring: Array  # (n_near,)
+    moment: Array  # (n_near,)
+    dashpots: Array  # (n_near, 3)
+
+
+class LedgerArrays(NamedTuple):
+    """Accumulated losses and works of every block."""
+
+    loss: Array  # (n_blocks, LEDGER_COLUMNS)
+
+
+class LinearNormal(NamedTuple):
+    k_n: float
+    c_n: float
+    may_pull: bool
+
+
+class CoulombTangential(NamedTuple):
+    k_t: float
+    c_t: float
+    mu: float
+
+
+class ElasticPlasticRolling(NamedTuple):
+    mu_r: float
+    eta_r: float
+    k_r: float  # 0: k_t R_r^2
+
+
+class GlobalDamping(NamedTuple):
+    alpha_t: float
+    alpha_r: float
+
+
+class Meeting(NamedTuple):
+    """Kinematics of one contact of i with j (model 1.1)."""
+
+    delta: float
+    v_n: float
+    v_t: float
+    omega_r: float
+    r_r: float
+    compliance: float
+
+
+class Response(NamedTuple):
+    """What a contact does: totals, spring parts, and the dashpots' share."""
+
+    f_n: float
+    f_t: float
+    m_t: float
+    spring: float
+    moment: float
+    dash_n: float
+    dash_t: float
+    dash_r: float
+
+
+NO_RESPONSE = Response(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

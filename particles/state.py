@@ -1,0 +1,120 @@
+"""The state of all discs as a struct of arrays."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from particles.errors import ParticleError, require
+
+Floats = NDArray[np.float64]
+FREE = -1
+
+
+@dataclass(kw_only=True)
+class Grains:
+    """Discs: the free ones first, then the prescribed ones (glued grains, rows).
+
+    All arrays have shape (n,). SI units per unit thickness: m, m/s, rad, rad/s, kg/m, kg m, N/m;
+    counter-clockwise positive. Free grains are reordered in memory while they move; `number` is
+    the place a grain had at the beginning, and `body` is -1 for a free grain or the number of the
+    prescribed body that carries it. Between calls of `ParticleSystem.advance` positions and forces
+    belong to the present time, velocities to half a step later.
+    """
+
+    n_free: int
+    x: Floats
+    y: Floats
+    theta: Floats
+    vx: Floats
+    vy: Floats
+    omega: Floats
+    fx: Floats
+    fy: Floats
+    torque: Floats
+    radius: Floats
+    mass: Floats
+    inertia: Floats
+    roll_compliance: Floats
+    x_listed: Floats
+    y_listed: Floats
+    body: NDArray[np.int32]
+    number: NDArray[np.int64]
+
+    @classmethod
+    def discs(
+        cls,
+        position: ArrayLike,
+        radius: ArrayLike,
+        density: ArrayLike,
+        *,
+        velocity: ArrayLike = 0.0,
+        spin: ArrayLike = 0.0,
+    ) -> "Grains":
+        """Free discs at `position` (n, 2) [m], `radius` (n,) or one [m], `density` [kg/m3].
+
+        Mass ``pi r^2 rho`` [kg/m], inertia ``m r^2 / 2`` [kg m]; `velocity` (n, 2) [m/s], `spin`
+        (n,) [rad/s].
+        """
+        place = np.atleast_2d(np.asarray(position, float)).reshape(-1, 2)
+        n = len(place)
+        zeros = {f.name: np.zeros(n) for f in fields(cls) if f.name not in ("n_free", "body", "number")}
+        grains = cls(n_free=n, body=np.full(n, FREE, np.int32), number=np.arange(n, dtype=np.int64), **zeros)
+        grains.x[:], grains.y[:] = place.T
+        grains.radius[:] = radius
+        speed = np.broadcast_to(np.asarray(velocity, float), (n, 2))
+        grains.vx[:], grains.vy[:] = speed.T
+        grains.omega[:] = spin
+        grains.mass[:] = np.pi * grains.radius**2 * np.asarray(density, float)
+        grains._check()
+        grains.inertia[:] = 0.5 * grains.mass * grains.radius**2
+        grains.roll_compliance[:] = 1.0 / (grains.inertia + grains.mass * grains.radius**2)
+        return grains
+
+    def with_prescribed(self, position: ArrayLike, radius: ArrayLike, body: int) -> "Grains":
+        """These grains and the discs of one more prescribed body (no mass: they are not integrated)."""
+        place = np.asarray(position, float).reshape(-1, 2)
+        n = len(place)
+        more = {f.name: np.zeros(n) for f in fields(self) if f.name not in ("n_free", "body", "number")}
+        more["x"], more["y"] = place[:, 0].copy(), place[:, 1].copy()
+        more["radius"] = np.broadcast_to(np.asarray(radius, float), (n,)).copy()
+        more["body"] = np.full(n, body, np.int32)
+        more["number"] = np.arange(len(self.x), len(self.x) + n, dtype=np.int64)
+        both = {name: np.concatenate([getattr(self, name), array]) for name, array in more.items()}
+        grains = Grains(n_free=self.n_free, **both)
+        grains._check()
+        return grains
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    @property
+    def position(self) -> Floats:
+        """(n, 2) [m], a copy."""
+        return np.column_stack([self.x, self.y])
+
+    def bodies(self) -> dict[int, slice]:
+        """The places of each prescribed body."""
+        found = {}
+        for body in np.unique(self.body[self.n_free :]):
+            at = np.nonzero(self.body == body)[0]
+            found[int(body)] = slice(int(at[0]), int(at[-1]) + 1)
+        return found
+
+    def reorder(self, order: NDArray[np.int64]) -> None:
+        """Put free grain order[k] into place k."""
+        for f in fields(self):
+            if f.name != "n_free":
+                array = getattr(self, f.name)
+                array[: self.n_free] = array[order]
+
+    def _check(self) -> None:
+        for name in ("x", "y", "vx", "vy", "omega", "radius", "mass"):
+            bad = np.nonzero(~np.isfinite(getattr(self, name)))[0]
+            if len(bad):
+                raise ParticleError(f"{name} of grain {bad[0]} is not a finite number")
+        if len(self.radius) and not self.radius.min() > 0.0:
+            raise ParticleError(f"radius of grain {self.radius.argmin()} = {self.radius.min():g} must be positive")
+        free = self.mass[: self.n_free]
+        if len(free):
+            require("grain mass", float(free.min()), above=0.0)

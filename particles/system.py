@@ -1,0 +1,277 @@
+"""Discs in motion: state, contacts, walls and the leapfrog, behind one object."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numba
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from particles.contact import ContactModel, GlobalDamping
+from particles.errors import ParticleError, require
+from particles.kernels import advance as stepping
+from particles.kernels import energy as looking
+from particles.kernels.layout import (
+    DAMPING_AHEAD,
+    LEDGER_COLUMNS,
+    GrainArrays,
+    LedgerArrays,
+)
+from particles.kernels.motion import kick
+from particles.neighbours import ContactList, block_starts
+from particles.state import Grains
+from particles.walls import Wall
+
+LOSSES = ("normal_dashpot", "tangential_dashpot", "sliding", "rolling_dashpot", "rolling_slip", "global_damping")
+
+
+@dataclass(frozen=True)
+class ContactLook:
+    """The contacts at one moment: energies of the springs [J/m], counts, the deepest overlap.
+
+    `overlap` (n,) [m] is the sum over the contacts of each grain, `contacts` (n,) their number;
+    `deepest` is the largest overlap over the smaller radius, at grain `deepest_at`.
+    """
+
+    normal_energy: float
+    tangential_energy: float
+    rolling_energy: float
+    count: int
+    deepest: float
+    deepest_at: int
+    overlap: NDArray[np.float64]
+    contacts: NDArray[np.int64]
+
+
+class ParticleSystem:
+    """Discs, their contacts and walls, advanced by the leapfrog.
+
+    One step: drift ``x += dt v``; new contact list if a grain may have crossed the skin; contact
+    forces at the new positions with the velocities of the half step between; kick ``v += dt F/m``
+    (the prescribed grains keep the velocity they were given). Model 1.4; Gomes 2014, section 2.1.2.
+
+    Parameters
+    ----------
+    grains : Grains
+        Taken over and reordered in memory.
+    contact : ContactModel
+    time_step : float
+        dt [s].
+    walls : sequence of Wall
+    gravity : (2,) floats
+        [m/s2].
+    damping : GlobalDamping, optional
+    ledger : bool
+        Keep losses and works for the energy balance.
+    threads : int
+        The same bits for any number.
+
+    Raises
+    ------
+    ParticleError
+        For impossible parameters, coinciding centres, or a state that is no longer finite.
+    """
+
+    def __init__(
+        self,
+        grains: Grains,
+        contact: ContactModel,
+        *,
+        time_step: float,
+        walls: Sequence[Wall] = (),
+        gravity: Sequence[float] = (0.0, 0.0),
+        damping: GlobalDamping | None = None,
+        ledger: bool = True,
+        threads: int = 1,
+    ) -> None:
+        require("time step", time_step, above=0.0)
+        if len(grains) == 0:
+            raise ParticleError("a particle system needs at least one grain")
+        self.grains = grains
+        self.contact = contact
+        self.time_step = float(time_step)
+        self.gravity = np.array(gravity, float)
+        self.damping = damping
+        self.threads = use_threads(threads)
+        self.steps_done = 0
+        self.rebuilds = 0
+        self.blocks = block_starts(grains.n_free, len(grains))
+        self.impulse = np.zeros((len(grains) - grains.n_free, 2))
+        self.ledger = LedgerArrays(np.zeros((len(self.blocks) - 1, LEDGER_COLUMNS))) if ledger else None
+        self.list = ContactList(contact, list(walls), ledger=ledger)
+        self._started = False
+
+    # -- stepping -----------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """Time of the present positions [s] since the system was made."""
+        return self.steps_done * self.time_step
+
+    def start(self) -> None:
+        """Forces at the initial positions and the first half kick, which makes the leapfrog order 2."""
+        if self._started:
+            return
+        self._rebuild()
+        arrays, laws = self._arrays(), self._laws()
+        stepping.forces(arrays, self.list.pairs, self.list.walls, *laws, None, 0.0)
+        half = 0.5 * self.time_step
+        for block in range(len(self.blocks) - 2):
+            kick(block, arrays, *self.gravity, laws[1], self._damping(), self.ledger, half)
+        if self.ledger is not None:
+            ahead = 2.0 * self.ledger.loss[:, DAMPING_AHEAD].copy()
+            self.ledger.loss[:] = 0.0
+            self.ledger.loss[:, DAMPING_AHEAD] = ahead
+        self._started = True
+
+    def advance(self, steps: int) -> None:
+        """Take `steps` leapfrog steps, making new contact lists where needed."""
+        self.start()
+        self.impulse[:] = 0.0
+        threaded = self.threads > 1 and len(self.blocks) > 2
+        step = stepping.advance_threaded if threaded else stepping.advance
+        laws, damping, drifted = self._laws(), self._damping(), False
+        left = int(steps)
+        while left > 0:
+            arrays, listed = self._arrays(), self.list
+            done, drifted = step(
+                arrays, listed.pairs, listed.walls, self.gravity, *laws, damping, self.ledger,
+                bool(drifted), listed.reach2, left, self.time_step,
+            )  # fmt: skip
+            left -= done
+            self.steps_done += done
+            if drifted:
+                self._rebuild()
+
+    def _rebuild(self) -> None:
+        self.list.rebuild(self.grains, self.time_step)
+        self.rebuilds += 1
+
+    def _arrays(self) -> GrainArrays:
+        g = self.grains
+        return GrainArrays(
+            g.x, g.y, g.theta, g.vx, g.vy, g.omega, g.fx, g.fy, g.torque, g.radius, g.mass, g.inertia,
+            g.roll_compliance, g.x_listed, g.y_listed, self.impulse, self.blocks,
+        )  # fmt: skip
+
+    def _laws(self) -> tuple[Any, Any, Any]:
+        model = self.contact
+        return (
+            model.normal.numbers(),
+            None if model.tangential is None else model.tangential.numbers(),
+            None if model.rolling is None else model.rolling.numbers(),
+        )
+
+    def _damping(self) -> Any:
+        return None if self.damping is None else self.damping.numbers()
+
+    # -- prescribed bodies --------------------------------------------------------------------
+
+    def steer(self, places: slice, target: ArrayLike, interval: float) -> None:
+        """Give the prescribed grains at `places` the velocity that takes them to `target` (k, 2) in `interval` [s]."""
+        goal = np.asarray(target, float)
+        g = self.grains
+        g.vx[places] = (goal[:, 0] - g.x[places]) / interval
+        g.vy[places] = (goal[:, 1] - g.y[places]) / interval
+
+    def set_velocity(self, places: slice, velocity: ArrayLike) -> None:
+        """Give prescribed grains a velocity (k, 2) or (2,) [m/s]."""
+        speed = np.asarray(velocity, float)
+        self.grains.vx[places], self.grains.vy[places] = speed[..., 0], speed[..., 1]
+
+    def force_on(self, places: slice) -> NDArray[np.float64]:
+        """Contact force (k, 2) [N/m] on the grains at `places`, at the present time."""
+        return np.column_stack([self.grains.fx[places], self.grains.fy[places]])
+
+    def impulse_on(self, places: slice) -> NDArray[np.float64]:
+        """Contact impulse (k, 2) [N s/m] on prescribed grains during the last `advance`."""
+        first = self.grains.n_free
+        return self.impulse[places.start - first : places.stop - first]
+
+    # -- looking ------------------------------------------------------------------------------
+
+    def look(self) -> ContactLook:
+        """The contacts as they stand. Changes nothing."""
+        self.start()
+        n = len(self.grains)
+        overlap, contacts = np.zeros(n), np.zeros(n, np.int64)
+        numbers = looking.look_at_contacts(
+            self._arrays(), self.list.pairs, self.list.walls, *self._laws(), overlap, contacts
+        )
+        return ContactLook(*numbers, overlap, contacts)
+
+    def energies(self, look: ContactLook | None = None) -> dict[str, float]:
+        """Stored energies, summed losses and works [J/m] since the start, by name.
+
+        ``kinetic + rotational + gravity + springs + losses - works`` is constant up to the error of
+        the integrator. Kinetic energy is ``m v(n-1/2) v(n+1/2) / 2``.
+        """
+        look = look or self.look()
+        kinetic, rotational, potential = looking.kinetic_energy(
+            self._arrays(), self.grains.n_free, *self.gravity, self._laws()[1], self._damping(), self.time_step
+        )
+        energies = {
+            "kinetic": kinetic, "rotational": rotational, "gravity": potential,
+            "normal_springs": look.normal_energy, "tangential_springs": look.tangential_energy,
+            "rolling_springs": look.rolling_energy,
+        }  # fmt: skip
+        if self.ledger is not None:
+            total = self.ledger.loss.sum(axis=0)
+            energies |= {f"loss_{name}": total[k] for k, name in enumerate(LOSSES)}
+            energies |= {"work_prescribed": total[7], "work_walls": total[8]}
+        return {name: float(value) for name, value in energies.items()}
+
+    @property
+    def wall_force(self) -> NDArray[np.float64]:
+        """Force (n_walls, 2) [N/m] of the grains on each wall."""
+        return self.list.walls.force.sum(axis=0)
+
+    def momentum(self) -> NDArray[np.float64]:
+        """Momentum (2,) [kg/s] of the free grains at the half step."""
+        free = slice(self.grains.n_free)
+        mass = self.grains.mass[free]
+        return np.array([mass @ self.grains.vx[free], mass @ self.grains.vy[free]])
+
+    # -- checkpoint ---------------------------------------------------------------------------
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """Everything that is needed to go on with the same bits."""
+        saved = {f"grains.{f.name}": np.array(getattr(self.grains, f.name)) for f in fields(self.grains)}
+        for group in ("pairs", "walls"):
+            arrays = getattr(self.list, group)._asdict()
+            saved |= {f"{group}.{name}": array.copy() for name, array in arrays.items()}
+        saved["skin"] = np.array(self.list.skin)
+        saved["counters"] = np.array([self.steps_done, self.rebuilds, int(self._started)])
+        if self.ledger is not None:
+            saved["losses"] = self.ledger.loss.copy()
+        return saved
+
+    def restore(self, saved: Mapping[str, NDArray[Any]]) -> None:
+        """Go back to a state made by `state` of a system with the same grains and features."""
+        if len(saved["grains.x"]) != len(self.grains) or int(saved["grains.n_free"]) != self.grains.n_free:
+            raise ParticleError(
+                f"saved state has {len(saved['grains.x'])} grains, this system has {len(self.grains)}: "
+                "use the scene the state was saved from"
+            )
+        for f in fields(self.grains):
+            if f.name != "n_free":
+                getattr(self.grains, f.name)[:] = saved[f"grains.{f.name}"]
+        for group in ("pairs", "walls"):
+            names = getattr(self.list, group)._fields
+            arrays = type(getattr(self.list, group))(*(np.array(saved[f"{group}.{name}"]) for name in names))
+            setattr(self.list, group, arrays)
+        self.list.skin = float(saved["skin"])
+        self.steps_done, self.rebuilds, started = (int(c) for c in saved["counters"])
+        self._started = bool(started)
+        if self.ledger is not None:
+            self.ledger.loss[:] = saved["losses"]
+
+
+def use_threads(threads: int) -> int:
+    """Set the number of threads of the compiled loops, at most what the machine lends."""
+    if threads < 1:
+        raise ParticleError(f"threads = {threads} must be at least 1")
+    allowed = min(threads, numba.config.NUMBA_NUM_THREADS)
+    numba.set_num_threads(allowed)
+    return allowed
