@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -18,7 +18,12 @@ class Recipe(Table):
         0.05, description="overlap allowed, as a fraction of the smallest radius [-]"
     )
     restitution: Annotated[Number, Field(gt=0, le=1)] = Field(
-        description="restitution of a spring and dashpot released at zero overlap [-]"
+        description="speed of rebound over speed of impact [-]"
+    )
+    restitution_at: Literal["zero_force", "zero_overlap"] = Field(
+        "zero_force",
+        description="end of the contact that the restitution refers to: zero force, as the contact "
+        "law without tension has it, or zero overlap, the textbook's spring and dashpot",
     )
     stiffness_ratio: Positive = Field(0.05, description="tangential over normal stiffness [-]")
 

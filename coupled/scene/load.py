@@ -68,7 +68,7 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"{path}: not valid TOML, please mend it: {error}.") from None
+        raise SceneError(f"{path}: this is not valid TOML, mend it: {error}.") from None
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(f"{path}: cannot be read: {error}.") from None
 

@@ -47,8 +47,8 @@ def nearest(word: str, allowed: Iterable[str]) -> str:
     """Return a suggestion for a mistyped word, with all that is allowed."""
     names = list(allowed)
     close = difflib.get_close_matches(word, names, n=1, cutoff=0.5)
-    hint = f"did you mean '{close[0]}'? " if close else ""
-    return f"{hint}Allowed: {', '.join(names)}"
+    choice = f"allowed: {', '.join(names)}"
+    return f"did you mean '{close[0]}'? ({choice})" if close else choice
 
 
 def translate(error: ValidationError, describe: dict[str, str]) -> SceneError:
