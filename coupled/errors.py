@@ -16,11 +16,14 @@ class SceneError(LeitoError):
         What is wrong, with the key's path, its value, what is allowed and the remedy.
     key
         Dotted path of the key, e.g. ``"grains.sizes.0.radius"``; empty for the file as a whole.
+    file
+        Name of the file, already said in the sentence; empty while it is not.
     """
 
-    def __init__(self, sentence: str, *, key: str = "") -> None:
+    def __init__(self, sentence: str, *, key: str = "", file: str = "") -> None:
         super().__init__(sentence)
         self.key = key
+        self.file = file
 
 
 class Interrupted(LeitoError):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
@@ -73,6 +73,8 @@ class Grains(Table):
 
 class SettledGrains(Table):
     """Free grains as another scene, the bed, left them at its end."""
+
+    beside: ClassVar[str] = " together with bed"
 
     bed: Annotated[str, Field(min_length=1)] = Field(
         description="name or path of the scene that settles the grains"

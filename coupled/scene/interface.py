@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag
 
@@ -67,6 +67,8 @@ class Row(Table):
 
 class RowUnder(Table):
     """A row of fixed grains, one exactly below each glued grain of a boundary, touching it."""
+
+    beside: ClassVar[str] = " together with under"
 
     under: str = Field(description="boundary of the structure")
     radius: Positive = Field(description="radius [m]")

@@ -68,9 +68,11 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"{path}: this is not valid TOML, mend it: {error}.") from None
+        raise SceneError(
+            f"{path}: this is not valid TOML, mend it: {error}.", file=path.name
+        ) from None
     except (OSError, UnicodeDecodeError) as error:
-        raise SceneError(f"{path}: cannot be read: {error}.") from None
+        raise SceneError(f"{path}: cannot be read: {error}.", file=path.name) from None
 
 
 def _resolve_bed(
@@ -114,10 +116,10 @@ def _bed_file(name: str, path: Path, chain: tuple[Path, ...]) -> Path:
     try:
         file = find_scene(name, beside=path.parent)
     except SceneError as error:
-        raise SceneError(f'grains.bed = "{name}": {error}', key="grains.bed") from None
+        raise SceneError(f'grains.bed = "{name}" is not found: {error}', key="grains.bed") from None
     if file.resolve() in chain:
         raise SceneError(
-            f'grains.bed = "{name}": a scene cannot settle on itself; name a scene that lays '
+            f'grains.bed = "{name}" leads back to this scene; name a scene that lays '
             "grains out.",
             key="grains.bed",
         )
@@ -125,9 +127,10 @@ def _bed_file(name: str, path: Path, chain: tuple[Path, ...]) -> Path:
 
 
 def _named(path: Path, error: SceneError) -> SceneError:
-    """Put the file's name in front, once."""
-    text = str(error)
-    return error if ".toml: " in text else SceneError(f"{path.name}: {text}", key=error.key)
+    """Put the file's name in front, once: an error inside a bed has the bed's already."""
+    if error.file:
+        return error
+    return SceneError(f"{path.name}: {error}", key=error.key, file=path.name)
 
 
 def _describe(model: type[BaseModel], prefix: str = "") -> dict[str, str]:

@@ -34,8 +34,8 @@ class Plain(str):
 
 
 def refusal(key: str, value: Any, reason: str) -> SceneError:
-    """Return the error ``key = value: reason``; the reason ends with the remedy."""
-    return SceneError(f"{key} = {_shown(value)}: {reason}.", key=key)
+    """Return the error ``key = value reason``; the reason is a verb phrase with the remedy."""
+    return SceneError(f"{key} = {_shown(value)} {reason}.", key=key)
 
 
 def missing(key: str, reason: str) -> SceneError:
@@ -65,22 +65,21 @@ def translate(error: ValidationError, describe: dict[str, str]) -> SceneError:
     problems.sort(key=lambda problem: problem["type"] != "unknown_key")
     problem = problems[0]
     path = [str(part) for part in problem["loc"] if not str(part).startswith("<")]
-    key = ".".join(path)
-    meaning = describe.get(".".join(part for part in path if not part.isdigit()), "")
-    return _sentence(problem["type"], key, problem, f" ({meaning})" if meaning else "")
+    plain = ".".join(part for part in path if not part.isdigit())
+    meaning = f" ({describe[plain]})" if describe.get(plain) else ""
+    is_table = any(name.startswith(f"{plain}.") for name in describe)
+    return _sentence(problem, ".".join(path), meaning, is_table)
 
 
-def _sentence(kind: str, key: str, problem: Any, meaning: str) -> SceneError:
-    value, context = problem["input"], problem.get("ctx", {})
+def _sentence(problem: Any, key: str, meaning: str, is_table: bool) -> SceneError:
+    kind, value, context = problem["type"], problem["input"], problem.get("ctx", {})
     if kind == "unknown_key":
         unknown = context["unknown"]
         full = f"{key}.{unknown}" if key else unknown
         hint = nearest(unknown, context["allowed"])
-        return SceneError(f"{full} is not a known key: {hint}.", key=full)
+        return SceneError(f"{full} is not a known key{context['beside']}: {hint}.", key=full)
     if kind == "missing":
-        table = key.rpartition(".")[0]
-        where = f"to the table [{table}]" if table else "at the top of the file"
-        return missing(key, f"add it {where}{meaning}")
+        return _missing(key, value, meaning, is_table)
     if kind == "unknown_kind":
         given = value.get("kind") if isinstance(value, dict) else value
         return _choice(f"{key}.kind", given, context["allowed"])
@@ -98,6 +97,16 @@ def _sentence(kind: str, key: str, problem: Any, meaning: str) -> SceneError:
         bound = f"at least {fewest}" if kind == "too_short" else f"at most {most}"
         return refusal(key, value, f"must have {bound} entries{meaning}")
     return refusal(key, value, f"{problem['msg'][:1].lower()}{problem['msg'][1:]}{meaning}")
+
+
+def _missing(key: str, value: Any, meaning: str, is_table: bool) -> SceneError:
+    table, _, last = key.rpartition(".")
+    if last.isdigit():
+        return refusal(table, value, f"has too few entries{meaning}")
+    if is_table:
+        return missing(key, f"add the table [{key}]{meaning}")
+    where = f"to the table [{table}]" if table else "at the top of the file"
+    return missing(key, f"add it {where}{meaning}")
 
 
 def _choice(key: str, value: Any, allowed: Sequence[str]) -> SceneError:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
@@ -37,6 +37,8 @@ class Newmark(Table):
 class BoundaryLoad(Table):
     """A force spread evenly over the length of a boundary."""
 
+    beside: ClassVar[str] = ' together with kind = "boundary"'
+
     kind: Literal["boundary"] = "boundary"
     boundary: str = Field(description="name of the loaded boundary")
     total_force: Vector = Field(description="resultant [N per m of thickness]")
@@ -46,6 +48,8 @@ class BoundaryLoad(Table):
 class BodyLoad(Table):
     """A uniform acceleration of the whole structure, such as its own weight."""
 
+    beside: ClassVar[str] = ' together with kind = "body"'
+
     kind: Literal["body"] = "body"
     acceleration: Vector = Field(description="acceleration [m/s2]")
     ramp_time: NonNegative = Field(0.0, description="time to reach the full load [s]")
@@ -53,6 +57,8 @@ class BodyLoad(Table):
 
 class PointLoad(Table):
     """A force on the boundary node nearest to a point."""
+
+    beside: ClassVar[str] = ' together with kind = "point"'
 
     kind: Literal["point"] = "point"
     point: Vector = Field(description="point relative to the centroid of the shape [m]")

@@ -5,7 +5,7 @@ TOML already tells numbers from strings, so a string is never read as a number h
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field, Strict, model_validator
 from pydantic_core import PydanticCustomError
@@ -23,6 +23,9 @@ Vector = tuple[Number, Number]
 class Table(BaseModel):
     """A table of the scene file: frozen, finite numbers only, no key that it does not know."""
 
+    beside: ClassVar[str] = ""
+    """What narrows the allowed keys, for the sentence of refusal."""
+
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     @model_validator(mode="before")
@@ -34,6 +37,8 @@ class Table(BaseModel):
             if unknown:
                 allowed = list(cls.model_fields)
                 raise PydanticCustomError(
-                    "unknown_key", "unknown key", {"unknown": unknown[0], "allowed": allowed}
+                    "unknown_key",
+                    "unknown key",
+                    {"unknown": unknown[0], "allowed": allowed, "beside": cls.beside},
                 )
         return data

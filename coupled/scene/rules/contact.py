@@ -74,7 +74,7 @@ def _check_recipe(scene: Scene, contact: Contact) -> None:
         raise refusal(
             "contact.recipe.drop_height",
             recipe.drop_height,
-            "a fall needs gravity; give gravity, or impact_speed instead",
+            "needs gravity to fall; give gravity, or impact_speed instead",
         )
     if scene.first_grains is None:
         raise refusal(

@@ -31,7 +31,9 @@ def _check_laid_out(grains: Grains, box: Box | None) -> None:
         return
     if grains.positions:
         raise refusal(
-            "grains.positions", Plain("[...]"), 'belongs to layout = "list"; remove it or set the layout'
+            "grains.positions",
+            Plain("[...]"),
+            'belongs to layout = "list"; remove it or set the layout',
         )
     if box is None:
         raise missing("box", "grains on a lattice need its width and height; add [box]")
@@ -41,7 +43,7 @@ def _check_laid_out(grains: Grains, box: Box | None) -> None:
         raise refusal(
             "grains.sizes",
             Plain(f"{grains.count} grains"),
-            f"more than the {capacity} that the lattice holds in the box of {box.width:g} x "
+            f"are more than the {capacity} that the lattice holds in the box of {box.width:g} x "
             f"{box.height:g} m; enlarge box.height or take fewer or smaller grains",
         )
 
@@ -52,7 +54,7 @@ def _check_size(grains: Grains, box: Box) -> None:
             raise refusal(
                 f"grains.sizes.{index}.radius",
                 size.radius,
-                f"the grain is larger than the box of {box.width:g} x {box.height:g} m; "
+                f"is larger than the box of {box.width:g} x {box.height:g} m; "
                 "reduce the radius or enlarge the box",
             )
 
@@ -62,7 +64,7 @@ def _check_positions(grains: Grains, box: Box | None) -> None:
         raise refusal(
             "grains.positions",
             Plain(f"{len(grains.positions)} rows"),
-            f"grains.sizes counts {grains.count} grains; give one row for each",
+            f"do not match the {grains.count} grains of grains.sizes; give one row for each",
         )
     if box is None:
         return
@@ -74,7 +76,7 @@ def _check_positions(grains: Grains, box: Box | None) -> None:
             raise refusal(
                 f"grains.positions.{index}",
                 list(row),
-                f"the grain of radius {radius:g} m is not inside the box of {box.width:g} x "
+                f"puts a grain of radius {radius:g} m outside the box of {box.width:g} x "
                 f"{box.height:g} m; move it in",
             )
 
@@ -87,16 +89,16 @@ def _check_bed(scene: Scene, name: str) -> None:
         raise refusal(
             "grains.bed",
             name,
-            "a bed settles free grains and nothing else; name a scene with [grains] and "
+            "is no bed, which settles free grains and nothing else; name a scene with [grains] and "
             "without [structure] and [[rows]]",
         )
     if bed.units != scene.units:
-        raise refusal("units", scene.units, f'the bed has units = "{bed.units}"; use the same')
+        raise refusal("units", scene.units, f'differs from the bed\'s "{bed.units}"; use the same')
     own, settled = scene.box, bed.box
     if own and settled and own.width < settled.width:
         raise refusal(
             "box.width",
             own.width,
-            f"narrower than the bed's {settled.width:g} m, so grains would lie outside; widen it "
-            "or remove [box] to take the bed's",
+            f"is narrower than the bed's {settled.width:g} m, so grains would lie outside; widen "
+            "it or remove [box] to take the bed's",
         )

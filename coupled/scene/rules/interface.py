@@ -21,7 +21,7 @@ def check_interface(scene: Scene) -> None:
         raise refusal(
             "interface",
             {},
-            "the glued grains have nothing to touch; add [grains], [[rows]] or [box]",
+            "leaves its glued grains with nothing to touch; add [grains], [[rows]] or [box]",
         )
     shape = structure.shape
     _check_boundaries(interface, shape)
@@ -33,8 +33,8 @@ def check_interface(scene: Scene) -> None:
             raise refusal(
                 "interface.diameter",
                 interface.diameter,
-                f"glued grains {spacing:.6g} m apart would overlap; give at most that, or fewer "
-                "per facet",
+                f"makes glued grains overlap, {spacing:.6g} m apart; give at most that, or "
+                "fewer per facet",
             )
 
 
@@ -75,8 +75,8 @@ def _check_number(interface: Interface, shape: Shape) -> None:
         raise refusal(
             "interface.count",
             count,
-            f"{facets} facets carry {open_end} plus a multiple of {facets} grains; give such a "
-            "number, or per_facet",
+            f"does not spread over {facets} facets; give {open_end} plus a multiple of {facets}, "
+            "or per_facet",
         )
 
 
@@ -89,7 +89,7 @@ def check_rows(scene: Scene) -> None:
             raise refusal(
                 f"rows.{index}.count",
                 row.count,
-                "one grain needs end = start and several need a distance; change count or end",
+                "does not suit start and end: one grain needs end = start, several a distance",
             )
 
 
@@ -102,6 +102,4 @@ def _check_under(scene: Scene, under: str, key: str) -> None:
     covered = under in interface.boundaries or "outer" in interface.boundaries
     if under not in structure.shape.glueable or not covered:
         allowed = structure.shape.glueable if covered else interface.boundaries
-        raise refusal(
-            key, under, f"carries no glued grains; {nearest(under, allowed)}"
-        )
+        raise refusal(key, under, f"carries no glued grains; {nearest(under, allowed)}")

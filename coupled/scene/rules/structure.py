@@ -79,7 +79,7 @@ def _check_loads(structure: Structure) -> None:
             raise refusal(
                 f"structure.loads.{index}.boundary",
                 load.boundary,
-                f"the shape has no such boundary; {nearest(load.boundary, known)}",
+                f"is no boundary of this shape; {nearest(load.boundary, known)}",
             )
 
 
@@ -101,14 +101,14 @@ def _check_path(points: tuple[tuple[float, float, float], ...]) -> None:
         raise refusal(
             "structure.path.points.0",
             list(points[0]),
-            "a path starts at time 0 without displacement; give [0.0, 0.0, 0.0]",
+            "does not start at time 0 without displacement; give [0.0, 0.0, 0.0]",
         )
     for index in range(1, len(points)):
         if points[index][0] <= points[index - 1][0]:
             raise refusal(
                 f"structure.path.points.{index}",
                 list(points[index]),
-                f"its time must be later than {points[index - 1][0]:g} s; times increase",
+                f"must be later than {points[index - 1][0]:g} s; let the times increase",
             )
 
 
@@ -138,7 +138,7 @@ def _check_placement(scene: Scene, structure: Structure) -> None:
             raise refusal(
                 f"structure.placement.{axis}",
                 centre,
-                f"the structure would reach from {low:g} to {high:g} m, outside the box of "
+                f"lets the structure reach from {low:g} to {high:g} m, outside the box of "
                 f"0 to {size:g} m; move it or enlarge the box",
             )
 
