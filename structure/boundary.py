@@ -1,0 +1,101 @@
+"""The outer boundary seen through the unknowns: forces in, motion out."""
+
+from __future__ import annotations
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from structure.errors import StructureError
+from structure.nodes import NodeMap
+
+
+def agreed_force(
+    force: NDArray[np.float64], shape: tuple[int, ...], comm: MPI.Intracomm
+) -> NDArray[np.float64]:
+    """A copy of the nodal forces of rank 0, on every rank.
+
+    Raises
+    ------
+    StructureError
+        The array has not the `shape` (n_b, 2).
+    """
+    if comm.rank == 0 and np.shape(force) != shape:
+        raise StructureError(
+            f"boundary_force has shape {np.shape(force)}: one force per boundary node, {shape}, "
+            "is needed"
+        )
+    counting = np.array(force, dtype=float) if comm.rank == 0 else np.empty(shape)
+    if comm.size > 1:
+        comm.Bcast(counting, root=0)
+    return counting
+
+
+class LocalBoundary:
+    """All unknowns are on this rank: plain indexing."""
+
+    def __init__(self, nodes: NodeMap, outer_nodes: NDArray[np.int64]) -> None:
+        row = np.argsort(nodes.owned)[outer_nodes]
+        self._dofs = np.column_stack([2 * row, 2 * row + 1])
+
+    def add(self, force: NDArray[np.float64], into: NDArray[np.float64]) -> None:
+        """Add nodal forces (n_b, 2) to the flat force array."""
+        into[self._dofs] += force
+
+    def read(
+        self, arrays: tuple[NDArray[np.float64], ...], sums: tuple[float, ...]
+    ) -> tuple[list[NDArray[np.float64]], tuple[float, ...]]:
+        """Boundary values (n_b, 2) of flat arrays, and the sums over all ranks."""
+        return [array.take(self._dofs) for array in arrays], sums
+
+
+class SharedBoundary:
+    """Unknowns on several ranks: the one gather brings motion back."""
+
+    def __init__(
+        self, nodes: NodeMap, outer_nodes: NDArray[np.int64], comm: MPI.Intracomm
+    ) -> None:
+        self._comm = comm
+        place = np.full(outer_nodes.max() + 1, -1)
+        place[outer_nodes] = np.arange(len(outer_nodes))
+        inside = nodes.owned <= outer_nodes.max()
+        rows = np.flatnonzero(inside)
+        rows = rows[place[nodes.owned[rows]] >= 0]
+        self._mine = place[nodes.owned[rows]]
+        self._dofs = np.column_stack([2 * rows, 2 * rows + 1])
+        self._places = comm.allgather(self._mine)
+        self._shape = (len(outer_nodes), 2)
+
+    def add(self, force: NDArray[np.float64], into: NDArray[np.float64]) -> None:
+        """Add nodal forces (n_b, 2) to this rank's flat force array."""
+        into[self._dofs] += force[self._mine]
+
+    def read(
+        self, arrays: tuple[NDArray[np.float64], ...], sums: tuple[float, ...]
+    ) -> tuple[list[NDArray[np.float64]], tuple[float, ...]]:
+        """Boundary values (n_b, 2) of flat arrays, and the sums over all ranks, in rank order."""
+        width = 2 * len(arrays)
+        mine = [array.take(self._dofs) for array in arrays]
+        packet = np.concatenate([np.hstack(mine).ravel(), sums])
+        counts = [width * len(places) + len(sums) for places in self._places]
+        received = np.empty(sum(counts))
+        self._comm.Allgatherv(packet, [received, counts])
+        table = np.empty((self._shape[0], width))
+        totals = np.zeros(len(sums))
+        begin = 0
+        for places, count in zip(self._places, counts):
+            share = received[begin : begin + count]
+            table[places] = share[: width * len(places)].reshape(-1, width)
+            totals += share[width * len(places) :]
+            begin += count
+        values = [np.ascontiguousarray(table[:, k : k + 2]) for k in range(0, width, 2)]
+        return values, tuple(totals.tolist())
+
+
+def boundary_exchange(
+    nodes: NodeMap, outer_nodes: NDArray[np.int64], comm: MPI.Intracomm
+) -> LocalBoundary | SharedBoundary:
+    """The exchange that fits the number of ranks."""
+    if comm.size == 1:
+        return LocalBoundary(nodes, outer_nodes)
+    return SharedBoundary(nodes, outer_nodes, comm)

@@ -1,0 +1,27 @@
+"""Refusals shared by the parameter classes: one sentence with name, value, allowed and remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from structure.errors import StructureError
+
+
+def positive(name: str, value: float, unit: str) -> None:
+    """Refuse what is not a finite number above 0."""
+    if not np.isfinite(value) or value <= 0:
+        raise StructureError(f"{name} = {value!r} must be finite and above 0 ({unit})")
+
+
+def not_negative(name: str, value: float, unit: str) -> None:
+    """Refuse what is not a finite number of at least 0."""
+    if not np.isfinite(value) or value < 0:
+        raise StructureError(f"{name} = {value!r} must be finite and at least 0 ({unit})")
+
+
+def plane_vector(name: str, value: Sequence[float], unit: str) -> None:
+    """Refuse what is not two finite numbers."""
+    if np.shape(value) != (2,) or not np.all(np.isfinite(value)):
+        raise StructureError(f"{name} = {value!r} must be two finite numbers, x and y ({unit})")

@@ -1,0 +1,78 @@
+"""What differs between versions of dolfinx. Tested with 0.5.2; the names of 0.9 are known."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import basix
+import dolfinx
+import numpy as np
+import ufl
+from dolfinx import fem
+from numpy.typing import NDArray
+
+CELLS = {"quadrilateral": basix.CellType.quadrilateral, "triangle": basix.CellType.triangle}
+
+
+@contextmanager
+def quiet_compiler() -> Iterator[None]:
+    """Keep the compiler's chatter on the root logger away from the user."""
+    before = logging.root.manager.disable
+    logging.disable(max(before, logging.INFO))
+    try:
+        yield
+    finally:
+        logging.disable(before)
+
+
+def compiled(form: ufl.Form) -> fem.Form:
+    """A form, compiled."""
+    with quiet_compiler():
+        return fem.form(form)
+
+
+def compiled_expression(
+    expression: ufl.core.expr.Expr, points: NDArray[np.float64]
+) -> fem.Expression:
+    """An expression at reference points, compiled."""
+    with quiet_compiler():
+        return fem.Expression(expression, points)
+
+
+def vector_space(domain: dolfinx.mesh.Mesh, order: int) -> fem.FunctionSpace:
+    """Continuous Lagrange space of plane vectors."""
+    with quiet_compiler():
+        if hasattr(fem, "functionspace"):
+            return fem.functionspace(domain, ("Lagrange", order, (2,)))
+        return fem.VectorFunctionSpace(domain, ("Lagrange", order), dim=2)
+
+
+def cell_nodes(domain: dolfinx.mesh.Mesh) -> NDArray[np.int32]:
+    """Local geometry nodes of this rank's cells, ghosts included, shape (cells, nodes)."""
+    dofmap = domain.geometry.dofmap
+    if isinstance(dofmap, np.ndarray):
+        return dofmap
+    cells = domain.topology.index_map(domain.topology.dim)
+    return dofmap.array.reshape(cells.size_local + cells.num_ghosts, -1)
+
+
+def interpolation_points(space: fem.FunctionSpace) -> NDArray[np.float64]:
+    """Reference points of the nodes of a cell, in the order of the cell's unknowns."""
+    points = space.element.interpolation_points
+    return points() if callable(points) else points
+
+
+def gauss_points(cell: str, degree: int) -> NDArray[np.float64]:
+    """Reference points of a Gauss rule exact to `degree`."""
+    return basix.make_quadrature(CELLS[cell], degree)[0]
+
+
+def evaluate(
+    expression: fem.Expression, domain: dolfinx.mesh.Mesh, cells: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    """Values of an expression on cells."""
+    if hasattr(fem, "functionspace"):
+        return expression.eval(domain, cells)
+    return expression.eval(cells)

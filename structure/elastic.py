@@ -1,0 +1,281 @@
+"""The elastic structure: a free plane-strain body, stepped by Newmark."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from meshes import StructureMesh
+from structure import checks, forms, modes
+from structure.boundary import agreed_force, boundary_exchange
+from structure.discrete import DiscreteBody
+from structure.errors import StructureError
+from structure.load_vectors import LoadVectors
+from structure.loads import Load
+from structure.material import PlaneStrain, Rayleigh
+from structure.newmark import Newmark, NewmarkStepper
+from structure.results import StructureEnergies, StructureFields, StructurePeaks, cell_kind
+from structure.statics import balanced_displacement
+from structure.stress import StressProbe
+
+STATE_FIELDS = ("displacement", "velocity", "acceleration")
+
+
+class ElasticStructure:
+    """Linear elastic body without supports, ``M a + C v + K u = loads + boundary forces``.
+
+    Small strain and small rotation about the reference shape: a body that turns as a whole by
+    more than a few degrees is stressed by the turn; watch `mean_rotation`.
+
+    Parameters
+    ----------
+    mesh
+        Shape, boundaries, order of the elements.
+    material, damping, scheme, loads
+        What it is made of, Rayleigh damping or None, Newmark's parameters, external loads.
+    time_step : float
+        Length [s] of every step.
+    ledger : bool
+        Keep the sums of work and loss that `energies` reports.
+
+    Attributes
+    ----------
+    comm, polyline, mass, time_step
+        Communicator, reference outer boundary, mass [kg/m], step [s].
+    boundary_mass : (n_b,)
+        Lumped mass [kg/m] of each boundary node.
+    boundary_displacement, boundary_velocity, boundary_acceleration : (n_b, 2)
+        [m], [m/s], [m/s^2], in the order of ``polyline.points``, on every rank; new arrays at
+        each step.
+    """
+
+    def __init__(
+        self,
+        mesh: StructureMesh,
+        *,
+        material: PlaneStrain,
+        time_step: float,
+        damping: Rayleigh | None = None,
+        scheme: Newmark = Newmark(),
+        loads: Sequence[Load] = (),
+        ledger: bool = True,
+    ) -> None:
+        checks.positive("time_step", time_step, "s")
+        self.mesh, self.comm, self.polyline = mesh, mesh.domain.comm, mesh.outer_polyline
+        self.material, self.damping, self.time_step = material, damping, float(time_step)
+        self._body = DiscreteBody(mesh, material.density)
+        self.mass = self._body.mass
+        self.boundary_mass = self._body.boundary_mass()
+        self._stiffness = forms.stiffness_matrix(self._body.space, material, mesh.order)
+        self._stepper = NewmarkStepper(
+            mass=self._body.mass_matrix,
+            stiffness=self._stiffness,
+            damping=_damping_matrix(self._body.mass_matrix, self._stiffness, damping),
+            scheme=scheme,
+            time_step=self.time_step,
+        )
+        self._exchange = boundary_exchange(self._body.nodes, mesh.outer_nodes, self.comm)
+        self._loads = LoadVectors(self._body, loads)
+        self._probe: StressProbe | None = None
+        self._ledger = ledger
+        self.set_initial()
+
+    @property
+    def time(self) -> float:
+        """Time [s] since the start."""
+        return self._steps * self.time_step
+
+    def set_initial(
+        self,
+        displacement: NDArray[np.float64] | None = None,
+        velocity: NDArray[np.float64] | None = None,
+        boundary_force: NDArray[np.float64] | None = None,
+    ) -> None:
+        """Start anew at t = 0; the acceleration follows from equilibrium.
+
+        Parameters
+        ----------
+        displacement, velocity : (n, 2)
+            [m], [m/s], in the order of ``mesh.points``; zero if absent.
+        boundary_force : (n_b, 2)
+            Nodal forces [N/m] at t = 0; zero if absent.
+        """
+        stepper = self._stepper
+        for name, own, given in (
+            ("displacement", stepper.displacement, displacement),
+            ("velocity", stepper.velocity, velocity),
+        ):
+            own[:] = 0.0 if given is None else self._body.nodes.share(self._nodal(name, given))
+        if boundary_force is None:
+            boundary_force = np.zeros_like(self.polyline.points)
+        self._steps = 0
+        self._loss = self._external_work = self._boundary_work = 0.0
+        self._external = self._loads.at(0.0)
+        stepper.force[:] = self._external
+        self._force = agreed_force(boundary_force, self.polyline.points.shape, self.comm)
+        self._exchange.add(self._force, stepper.force)
+        stepper.start()
+        self._read_boundary()
+
+    def advance(self, boundary_force: NDArray[np.float64]) -> None:
+        """One step with nodal forces (n_b, 2) [N/m] that act at its end; rank 0's count."""
+        stepper, before, old_force = self._stepper, self._external, self._force
+        self._steps += 1
+        if self.time - self.time_step < self._loads.constant_from:
+            self._external = self._loads.at(self.time)
+        stepper.force[:] = self._external
+        self._force = agreed_force(boundary_force, self.polyline.points.shape, self.comm)
+        self._exchange.add(self._force, stepper.force)
+        stepper.step()
+        if not self._ledger:
+            self._read_boundary()
+            return
+        mean = before if self._external is before else (before + self._external) / 2
+        shares = (stepper.loss_of_step(), float(mean.dot(stepper.increment)))
+        (loss, work), moved = self._read_boundary(stepper.increment, shares)
+        self._loss += loss
+        self._external_work += work
+        self._boundary_work += 0.5 * float(np.vdot(old_force + self._force, moved))
+
+    def predict(self, interval: float, order: int = 2) -> NDArray[np.float64]:
+        """Boundary displacement (n_b, 2) [m] after `interval` [s]: ``u + dt v (+ dt^2 a/2)``."""
+        ahead = self.boundary_displacement + interval * self.boundary_velocity
+        if order == 2:
+            ahead += (0.5 * interval**2) * self.boundary_acceleration
+        return ahead
+
+    def energies(self) -> StructureEnergies:
+        """Energies [J/m] at the present time and sums since the start."""
+        if not self._ledger:
+            raise StructureError("ledger = False keeps no sums of work: build with ledger=True")
+        return StructureEnergies(
+            kinetic=self._body.total(self._stepper.kinetic()),
+            strain=self._body.total(self._stepper.strain()),
+            rayleigh_loss=self._loss,
+            external_work=self._external_work,
+            boundary_work=self._boundary_work,
+        )
+
+    def centroid(self) -> NDArray[np.float64]:
+        """Present centroid (2,) [m]."""
+        return self._body.centroid_now(self._stepper.displacement)
+
+    def mean_rotation(self) -> float:
+        """Rotation [rad] of the best-fitting rigid motion, counter-clockwise positive."""
+        return self._body.mean_rotation(self._stepper.displacement)
+
+    def momentum(self) -> NDArray[np.float64]:
+        """Linear momentum (2,) [kg/s]."""
+        return self._body.momentum(self._stepper.velocity)
+
+    def external_force(self) -> NDArray[np.float64]:
+        """Resultant (2,) [N/m] of the external loads at the present time."""
+        return self._loads.resultant(self.time)
+
+    def peaks(self) -> StructurePeaks:
+        """Largest von Mises stress and principal strain over the Gauss points of all cells."""
+        return self._stress_probe().peaks(self._stepper.displacement)
+
+    def fields(self) -> StructureFields:
+        """Nodal fields in original order, on every rank."""
+        gather, stepper = self._body.nodes.gather, self._stepper
+        motion = {
+            "displacement": gather(stepper.displacement),
+            "velocity": gather(stepper.velocity),
+        }
+        return StructureFields(
+            points=self.mesh.points,
+            cells=self.mesh.cells,
+            cell_kind=cell_kind(self.mesh.cell, self.mesh.order),
+            point_data=motion | self._stress_probe().nodal(stepper.displacement),
+        )
+
+    def frequencies(self, count: int) -> NDArray[np.float64]:
+        """The lowest `count` elastic frequencies [Hz] of the free body, ascending."""
+        return modes.elastic_modes(self._body, self._stiffness, self.material, count)[0]
+
+    def release_from_mode(self, number: int, amplitude: float) -> None:
+        """Start anew from elastic mode `number` (1 is the lowest) at rest, loads kept.
+
+        The largest nodal displacement is `amplitude` [m]; its sign is that of the largest
+        component, made positive.
+        """
+        checks.positive("amplitude", abs(amplitude), "m, sign free")
+        shape = modes.elastic_modes(self._body, self._stiffness, self.material, number)[1][-1]
+        self.set_initial(displacement=amplitude * shape)
+
+    def static_displacement(self) -> NDArray[np.float64]:
+        """Displacement (n, 2) [m] at rest under the full loads, free of rigid motion.
+
+        The loads must be in balance, as nothing else holds the body.
+        """
+        return balanced_displacement(self._body, self._stiffness, self.material, self._loads)
+
+    def state(self) -> dict[str, NDArray[np.float64]]:
+        """All that is needed to go on with the same bits, in original node order, on every rank."""
+        arrays = {name: getattr(self._stepper, name) for name in STATE_FIELDS}
+        sums = [self._loss, self._external_work, self._boundary_work]
+        return {
+            **{name: self._body.nodes.gather(array) for name, array in arrays.items()},
+            "boundary_force": self._force.copy(),
+            "sums": np.array(sums),
+            "steps": np.array(self._steps),
+        }
+
+    def restore(self, state: dict[str, NDArray[np.float64]]) -> None:
+        """Take up a `state` of the same mesh, time step and loads; rank 0's counts."""
+        state = self.comm.bcast(state, root=0)
+        for name in STATE_FIELDS:
+            given = self._nodal(name, state[name])
+            getattr(self._stepper, name)[:] = self._body.nodes.share(given)
+        self._force = agreed_force(
+            state["boundary_force"], self.polyline.points.shape, self.comm
+        )
+        self._loss, self._external_work, self._boundary_work = map(float, state["sums"])
+        self._steps = int(state["steps"])
+        self._external = self._loads.at(self.time)
+        self._read_boundary()
+
+    def _read_boundary(
+        self,
+        increment: NDArray[np.float64] | None = None,
+        shares: tuple[float, ...] = (),
+    ) -> tuple[tuple[float, ...], NDArray[np.float64] | None]:
+        """Refresh the boundary arrays; returns the sums over ranks and the boundary's increment."""
+        stepper = self._stepper
+        arrays = (stepper.displacement, stepper.velocity, stepper.acceleration)
+        if increment is not None:
+            arrays += (increment,)
+        values, sums = self._exchange.read(arrays, shares)
+        self.boundary_displacement, self.boundary_velocity, self.boundary_acceleration = values[:3]
+        return sums, values[3] if increment is not None else None
+
+    def _nodal(self, name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        values = np.asarray(values, dtype=float)
+        if values.shape != self.mesh.points.shape or not np.all(np.isfinite(values)):
+            raise StructureError(
+                f"{name} must be finite and of the shape of the mesh's points, "
+                f"{self.mesh.points.shape}; got shape {values.shape}"
+            )
+        return values
+
+    def _stress_probe(self) -> StressProbe:
+        if self._probe is None:
+            self._probe = StressProbe(self._body, self.material)
+        return self._probe
+
+
+def _damping_matrix(
+    mass: PETSc.Mat, stiffness: PETSc.Mat, damping: Rayleigh | None
+) -> PETSc.Mat | None:
+    """``c_a M + c_b K``, or None without damping."""
+    if damping is None or damping.mass_factor == damping.stiffness_factor == 0.0:
+        return None
+    matrix = stiffness.copy()
+    matrix.scale(damping.stiffness_factor)
+    same = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+    matrix.axpy(damping.mass_factor, mass, structure=same)
+    return matrix

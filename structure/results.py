@@ -1,0 +1,77 @@
+"""What a structure tells about itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class StructureEnergies:
+    """Energies [J/m]; ``kinetic + strain + rayleigh_loss - external_work - boundary_work`` stays.
+
+    With Newmark's (1/4, 1/2) and for rigid bodies this holds to round-off; other parameters add
+    or take energy.
+
+    Attributes
+    ----------
+    kinetic, strain
+        ``v . M v/2`` and ``u . K u/2``.
+    rayleigh_loss
+        Lost in Rayleigh damping since the start.
+    external_work
+        Trapezoidal work of the loads since the start (of the drive, for a prescribed motion).
+    boundary_work
+        Trapezoidal work of the nodal forces given to `advance` since the start.
+    """
+
+    kinetic: float
+    strain: float
+    rayleigh_loss: float
+    external_work: float
+    boundary_work: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class StructurePeaks:
+    """Largest values over all Gauss points: von Mises stress [Pa], magnitude of principal strain."""
+
+    von_mises: float
+    strain: float
+
+
+STRESS_AND_STRAIN = (
+    "sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz", "von_mises", "strain_xx", "strain_yy", "strain_xy",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class StructureFields:
+    """Fields on the nodes in original order, the same for any number of ranks, on every rank.
+
+    Attributes
+    ----------
+    points : (n, 2)
+        Reference positions [m].
+    cells : (m, k)
+        Nodes of each cell in VTK order.
+    cell_kind : str
+        "quadrilateral", "quadrilateral9", "triangle" or "triangle6".
+    point_data : dict
+        "displacement" (n, 2) [m], "velocity" (n, 2) [m/s] and (n,) each: "sigma_xx", "sigma_yy",
+        "sigma_xy", "sigma_zz", "von_mises" [Pa], "strain_xx", "strain_yy", "strain_xy" (tensor
+        component). Stress and strain are averages, over the cells around a node, of each cell's
+        own value there; "von_mises" is that of the averaged stress.
+    """
+
+    points: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    cell_kind: str
+    point_data: dict[str, NDArray[np.float64]]
+
+
+def cell_kind(cell: str, order: int) -> str:
+    """Name of the cell with its number of nodes where that is not the number of corners."""
+    return cell if order == 1 else cell + {"quadrilateral": "9", "triangle": "6"}[cell]

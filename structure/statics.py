@@ -1,0 +1,61 @@
+"""Statics of a body that nothing holds: solvable where the loads balance."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from structure.discrete import DiscreteBody
+from structure.errors import StructureError
+from structure.load_vectors import LoadVectors
+from structure.material import PlaneStrain
+from structure.modes import rigid_motions, stiffness_scale
+from structure.solver import factorise
+
+LARGEST_IMBALANCE = 1e-9
+SWEEPS = 100
+
+
+def balanced_displacement(
+    body: DiscreteBody, stiffness: PETSc.Mat, material: PlaneStrain, loads: LoadVectors
+) -> NDArray[np.float64]:
+    """Solution (n, 2) [m] of ``K u = f`` at full load, orthogonal to the rigid motions.
+
+    K is singular: ``(K + s M) du = f - K u`` is repeated until nothing is left; each sweep
+    multiplies the error in a mode omega by ``s/(omega^2 + s)``.
+
+    Raises
+    ------
+    StructureError
+        The loads have a resultant force or moment.
+    """
+    force = loads.at(loads.constant_from)
+    rigid = rigid_motions(body)
+    work = np.abs(body.comm.allreduce(rigid @ force))
+    scale = np.sqrt(body.total(float(force @ force)) / body.mass)
+    if scale == 0.0:
+        return np.zeros_like(body.mesh.points)
+    if work.max() > LARGEST_IMBALANCE * scale:
+        raise StructureError(
+            f"loads with the resultant {loads.resultant(loads.constant_from).tolist()} N/m do not "
+            "balance in force and moment: a free body has no position of rest under them"
+        )
+    shift = 1e-2 * stiffness_scale(body, material)
+    shifted = stiffness.copy()
+    shifted.axpy(shift, body.mass_matrix, structure=PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+    solve = factorise(shifted)
+    right, solution = stiffness.createVecs()
+    residual, step = stiffness.createVecs()
+    right.array[:] = force
+    for _ in range(SWEEPS):
+        stiffness.mult(solution, residual)
+        residual.aypx(-1.0, right)
+        solve(residual, step)
+        free = step.array - rigid.T @ body.comm.allreduce(
+            rigid @ body.weigh(step.array)
+        )
+        solution.array[:] += free
+        if body.total(float(free @ free)) <= 1e-26 * solution.dot(solution):
+            break
+    return body.nodes.gather(solution.array)
