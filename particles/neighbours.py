@@ -133,7 +133,7 @@ class ContactList:
         return {
             "spring": np.zeros(kept),
             "moment": np.zeros(kept),
-            "dashpots": np.zeros((slots if self.ledger else 0, 3)),
+            **{name: np.zeros(slots if self.ledger else 0) for name in ("dash_n", "dash_t", "dash_r")},
         }
 
     def _pair_arrays(
@@ -180,5 +180,5 @@ class ContactList:
             raise ParticleError(f"grains {a} and {b} have the same centre: move one of them")
 
 
-def _history(listed: PairArrays | WallArrays) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    return listed.spring, listed.moment, listed.dashpots
+def _history(listed: PairArrays | WallArrays) -> tuple[np.ndarray, ...]:
+    return listed.spring, listed.moment, listed.dash_n, listed.dash_t, listed.dash_r

@@ -133,8 +133,8 @@ def carry_pairs(old_of, old_start, old_partner, old_history, start, partner, his
     `old_of` (n,) maps the new number of a grain to its old one. If the owner changes, what turns
     the owner (rolling) changes sign; the tangential force does not (its tangent turns as well).
     """
-    spring, moment, dashpots = history
-    old_spring, old_moment, old_dashpots = old_history
+    spring, moment, dash_n, dash_t, dash_r = history
+    old_spring, old_moment, old_dash_n, old_dash_t, old_dash_r = old_history
     for i in range(old_of.shape[0]):
         for k in range(start[i], start[i + 1]):
             a, b = old_of[i], old_of[partner[k]]
@@ -146,18 +146,18 @@ def carry_pairs(old_of, old_start, old_partner, old_history, start, partner, his
                     if spring.shape[0]:
                         spring[k] = old_spring[slot]
                         moment[k] = sign * old_moment[slot]
-                    if dashpots.shape[0]:
-                        dashpots[k, 0] = old_dashpots[slot, 0]
-                        dashpots[k, 1] = old_dashpots[slot, 1]
-                        dashpots[k, 2] = sign * old_dashpots[slot, 2]
+                    if dash_n.shape[0]:
+                        dash_n[k] = old_dash_n[slot]
+                        dash_t[k] = old_dash_t[slot]
+                        dash_r[k] = sign * old_dash_r[slot]
                     break
 
 
 @kernel
 def carry_walls(old_of, n_free, old_grain, old_wall, old_history, grain, wall, history):
     """Copy the history of every grain and wall that were listed before."""
-    spring, moment, dashpots = history
-    old_spring, old_moment, old_dashpots = old_history
+    spring, moment, dash_n, dash_t, dash_r = history
+    old_spring, old_moment, old_dash_n, old_dash_t, old_dash_r = old_history
     first = np.full(n_free, -1, np.int64)
     for k in range(old_grain.shape[0] - 1, -1, -1):
         first[old_grain[k]] = k
@@ -169,8 +169,10 @@ def carry_walls(old_of, n_free, old_grain, old_wall, old_history, grain, wall, h
                 if spring.shape[0]:
                     spring[k] = old_spring[slot]
                     moment[k] = old_moment[slot]
-                if dashpots.shape[0]:
-                    dashpots[k] = old_dashpots[slot]
+                if dash_n.shape[0]:
+                    dash_n[k] = old_dash_n[slot]
+                    dash_t[k] = old_dash_t[slot]
+                    dash_r[k] = old_dash_r[slot]
                 break
             slot += 1
 

@@ -16,6 +16,9 @@ from typing import Any, TypeVar
 import numba
 from numba.core import config
 
+# Measured on two cores at 15 000 discs: OpenMP 1.64 times one thread, TBB 0.86, Numba's own queue 0.82.
+config.THREADING_LAYER = "omp"
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -32,7 +35,8 @@ CACHE_FOLDER = _cache_folder()
 
 def _compiled(function: Function, *, parallel: bool) -> Function:
     before = config.CACHE_DIR
-    config.CACHE_DIR = str(CACHE_FOLDER)
+    # Numba names the cache file after the function alone: the two builds of one loop need two folders.
+    config.CACHE_DIR = str(CACHE_FOLDER / ("threads" if parallel else "serial"))
     try:
         return numba.njit(cache=True, parallel=parallel, error_model="numpy")(function)
     finally:

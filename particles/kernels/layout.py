@@ -48,7 +48,9 @@ class PairArrays(NamedTuple):
     partner: Array  # (n_slots,) int32
     spring: Array  # (n_slots,) tangential spring f [N/m]
     moment: Array  # (n_slots,) rolling spring M on the lower index [N]
-    dashpots: Array  # (n_slots, 3) forces of the step before: normal, tangential, rolling; for the ledger
+    dash_n: Array  # (n_slots,) dashpot forces of the step before, for the ledger
+    dash_t: Array
+    dash_r: Array
     crossing_start: Array  # (n_blocks + 1,)
     crossing: Array  # (n_crossing, 3) force x, y and torque on the partner
     incoming_grain: Array  # (n_incoming,) grains hit from earlier blocks, ascending
@@ -74,7 +76,9 @@ class WallArrays(NamedTuple):
     block: Array  # (n_blocks + 1,) first near pair of each block
     spring: Array  # (n_near,)
     moment: Array  # (n_near,)
-    dashpots: Array  # (n_near, 3)
+    dash_n: Array  # (n_near,)
+    dash_t: Array
+    dash_r: Array
 
 
 class LedgerArrays(NamedTuple):
@@ -118,7 +122,7 @@ class Meeting(NamedTuple):
 
 
 class Response(NamedTuple):
-    """What a contact does: totals, spring parts, and the dashpots' share."""
+    """What a contact does: totals, spring parts, the dashpots' share, and what the limits cut off."""
 
     f_n: float
     f_t: float
@@ -128,6 +132,5 @@ class Response(NamedTuple):
     dash_n: float
     dash_t: float
     dash_r: float
-
-
-NO_RESPONSE = Response(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    cut_t: float
+    cut_r: float

@@ -1,0 +1,83 @@
+"""Making a bed: grains on a lattice, ready to fall (model 1.6)."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from particles.errors import ParticleError, require
+from particles.state import Grains
+
+
+def lattice(
+    sizes: Sequence[tuple[float, int]],
+    density: float,
+    *,
+    width: float,
+    spacing: float = 1.05,
+    jitter: float = 0.0,
+    seed: int = 1,
+) -> Grains:
+    """Discs of mixed sizes on a square lattice between x = 0 and `width`, rows from the floor up.
+
+    Parameters
+    ----------
+    sizes : sequence of (radius [m], count)
+        Shuffled over the lattice by `seed`.
+    density : float
+        [kg/m3].
+    width : float
+        Of the box [m].
+    spacing : float
+        Lattice constant over the largest diameter, >= 1.
+    jitter : float
+        Random shift of each grain, as a fraction (0 to 1) of its free gap in its cell; a perfect
+        lattice of equal columns would come to rest as columns.
+    seed : int
+        Of the order and the shifts.
+
+    Raises
+    ------
+    ParticleError
+        If a number is out of range or a single grain does not fit in the width.
+    """
+    require("lattice spacing", spacing, at_least=1.0)
+    if not 0.0 <= jitter <= 1.0:
+        raise ParticleError(f"jitter = {jitter:g} must lie between 0 and 1")
+    rng = np.random.default_rng(seed)
+    radius = np.concatenate([np.full(count, size) for size, count in sizes])
+    rng.shuffle(radius)
+    pitch = 2.0 * float(radius.max()) * spacing
+    columns = int(width / pitch + 1e-9)
+    if columns < 1:
+        raise ParticleError(f"a grain of radius {radius.max():g} m does not fit in a box {width:g} m wide")
+    step = width / columns
+    place = np.arange(len(radius))
+    position = np.column_stack([(place % columns + 0.5) * step, (place // columns + 0.5) * pitch])
+    gap = 0.5 * np.array([step, pitch]) - radius[:, None]
+    position += jitter * gap * rng.uniform(-1.0, 1.0, position.shape)
+    return Grains.discs(position, radius, density)
+
+
+def rest_ratio(grains: Grains, gravity: Sequence[float], kinetic: float) -> float:
+    """Mean kinetic energy per grain over the mean of ``m |g| d``: much less than 1 at rest."""
+    free = slice(grains.n_free)
+    weight = float(np.hypot(*gravity)) * float(grains.mass[free].mean()) * 2.0 * float(grains.radius[free].mean())
+    return kinetic / grains.n_free / weight if weight > 0.0 else float("inf")
+
+
+def drop_height_on(grains: Grains, position: NDArray[np.float64], radius: NDArray[np.float64]) -> float:
+    """How far discs (k, 2), (k,) can be lowered before the first touches a free grain from above [m].
+
+    Infinite if none is below.
+    """
+    free = slice(grains.n_free)
+    lowest = np.inf
+    for (x, y), r in zip(position, radius, strict=True):
+        reach = grains.radius[free] + r
+        aside = np.abs(grains.x[free] - x)
+        under = (aside < reach) & (grains.y[free] < y)
+        if under.any():
+            clear = y - grains.y[free][under] - np.sqrt(reach[under] ** 2 - aside[under] ** 2)
+            lowest = min(lowest, float(clear.min()))
+    return lowest
