@@ -4,7 +4,7 @@ from particles.beds import lattice
 from particles.contact import ContactModel, CoulombFriction, ElasticPlasticRolling, GlobalDamping, LinearSpringDashpot
 from particles.errors import ParticleError
 from particles.state import Grains
-from particles.system import ContactLook, ParticleSystem
+from particles.system import ContactLook, ParticleSystem, continued
 from particles.timestep import source_bound
 from particles.walls import Wall, box
 
@@ -20,6 +20,7 @@ __all__ = [
     "ParticleSystem",
     "Wall",
     "box",
+    "continued",
     "lattice",
     "source_bound",
 ]

@@ -1,5 +1,6 @@
 """The contact list: which grains and walls may touch soon, and what their contacts remember."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -84,6 +85,24 @@ class ContactList:
                 old_of, before.start, before.partner, _history(before), start, partner, _history(self.pairs)
             )
         self._rebuild_walls(grains, old_of)
+
+    def take_over(self, saved: Mapping[str, np.ndarray], n: int) -> None:
+        """Adopt the histories of a saved list of the same free grains, now followed by others up to `n`."""
+        for group in ("pairs", "walls"):
+            own = getattr(self, group)
+            arrays = {name: np.array(saved[f"{group}.{name}"]) for name in own._fields}
+            if group == "walls":
+                if len(arrays["px"]) != len(own.px):
+                    continue
+                arrays |= {name: getattr(own, name) for name in ("px", "py", "nx", "ny", "vx", "vy")}
+            else:
+                more = n + 1 - len(arrays["start"])
+                arrays["start"] = np.append(arrays["start"], np.full(more, arrays["start"][-1]))
+            slots = len(arrays["partner" if group == "pairs" else "grain"])
+            for name, fresh in self._memory(slots).items():
+                if len(arrays[name]) != len(fresh):
+                    arrays[name] = fresh
+            setattr(self, group, type(own)(**arrays))
 
     def _near_pairs(self, grains: Grains, grid: Grid, cell_start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         start = np.zeros(len(grains) + 1, np.int64)

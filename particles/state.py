@@ -1,6 +1,8 @@
 """The state of all discs as a struct of arrays."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,6 +72,13 @@ class Grains:
         grains.inertia[:] = 0.5 * grains.mass * grains.radius**2
         grains.roll_compliance[:] = 1.0 / (grains.inertia + grains.mass * grains.radius**2)
         return grains
+
+    @classmethod
+    def from_saved(cls, saved: Mapping[str, NDArray[Any]]) -> "Grains":
+        """The free grains of a state saved by `ParticleSystem.state`, in the same order."""
+        n_free = int(saved["grains.n_free"])
+        arrays = {f.name: np.array(saved[f"grains.{f.name}"][:n_free]) for f in fields(cls) if f.name != "n_free"}
+        return cls(n_free=n_free, **arrays)
 
     def with_prescribed(self, position: ArrayLike, radius: ArrayLike, body: int) -> "Grains":
         """These grains and the discs of one more prescribed body (no mass: they are not integrated)."""

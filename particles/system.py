@@ -15,6 +15,7 @@ from particles.kernels import energy as looking
 from particles.kernels.layout import (
     DAMPING_AHEAD,
     LEDGER_COLUMNS,
+    WALL_WORK,
     GrainArrays,
     LedgerArrays,
 )
@@ -98,7 +99,11 @@ class ParticleSystem:
         self.rebuilds = 0
         self.blocks = block_starts(grains.n_free, len(grains))
         self.impulse = np.zeros((len(grains) - grains.n_free, 2))
-        self.ledger = LedgerArrays(np.zeros((len(self.blocks) - 1, LEDGER_COLUMNS))) if ledger else None
+        self.ledger = None
+        if ledger:
+            self.ledger = LedgerArrays(
+                np.zeros((len(self.blocks) - 1, LEDGER_COLUMNS)), np.zeros(len(grains) - grains.n_free)
+            )
         self.list = ContactList(contact, list(walls), ledger=ledger)
         self._started = False
 
@@ -168,12 +173,21 @@ class ParticleSystem:
 
     # -- prescribed bodies --------------------------------------------------------------------
 
-    def steer(self, places: slice, target: ArrayLike, interval: float) -> None:
-        """Give the prescribed grains at `places` the velocity that takes them to `target` (k, 2) in `interval` [s]."""
+    def steer(self, places: slice, target: ArrayLike, interval: float, velocity: ArrayLike | None = None) -> None:
+        """Send the prescribed grains at `places` to `target` (k, 2) [m] within `interval` [s].
+
+        Their velocity is what takes them there, or `velocity` (k, 2) [m/s] if one is given: then
+        they start from where that velocity ends at the target.
+        """
         goal = np.asarray(target, float)
         g = self.grains
-        g.vx[places] = (goal[:, 0] - g.x[places]) / interval
-        g.vy[places] = (goal[:, 1] - g.y[places]) / interval
+        if velocity is None:
+            g.vx[places] = (goal[:, 0] - g.x[places]) / interval
+            g.vy[places] = (goal[:, 1] - g.y[places]) / interval
+        else:
+            self.set_velocity(places, velocity)
+            g.x[places] = goal[:, 0] - interval * g.vx[places]
+            g.y[places] = goal[:, 1] - interval * g.vy[places]
 
     def set_velocity(self, places: slice, velocity: ArrayLike) -> None:
         """Give prescribed grains a velocity (k, 2) or (2,) [m/s]."""
@@ -219,7 +233,7 @@ class ParticleSystem:
         if self.ledger is not None:
             total = self.ledger.loss.sum(axis=0)
             energies |= {f"loss_{name}": total[k] for k, name in enumerate(LOSSES)}
-            energies |= {"work_prescribed": total[7], "work_walls": total[8]}
+            energies |= {"work_prescribed": self.ledger.prescribed_work.sum(), "work_walls": total[WALL_WORK]}
         return {name: float(value) for name, value in energies.items()}
 
     @property
@@ -233,6 +247,20 @@ class ParticleSystem:
         mass = self.grains.mass[free]
         return np.array([mass @ self.grains.vx[free], mass @ self.grains.vy[free]])
 
+    def work_by(self, places: slice) -> float:
+        """Work [J/m] that prescribed grains did on the others since the start."""
+        if self.ledger is None:
+            raise ParticleError("ledger = False keeps no works: build the system with ledger=True")
+        first = self.grains.n_free
+        return float(self.ledger.prescribed_work[places.start - first : places.stop - first].sum())
+
+    def force_residual(self) -> float:
+        """Sum of all contact forces on grains and walls over the sum of their magnitudes: round-off."""
+        g = self.grains
+        total = np.array([g.fx.sum(), g.fy.sum()]) + self.wall_force.sum(axis=0)
+        scale = np.hypot(g.fx, g.fy).sum() + np.hypot(*self.wall_force.T).sum()
+        return float(np.hypot(*total) / scale) if scale > 0.0 else 0.0
+
     # -- checkpoint ---------------------------------------------------------------------------
 
     def state(self) -> dict[str, NDArray[Any]]:
@@ -245,6 +273,7 @@ class ParticleSystem:
         saved["counters"] = np.array([self.steps_done, self.rebuilds, int(self._started)])
         if self.ledger is not None:
             saved["losses"] = self.ledger.loss.copy()
+            saved["prescribed_work"] = self.ledger.prescribed_work.copy()
         return saved
 
     def restore(self, saved: Mapping[str, NDArray[Any]]) -> None:
@@ -266,6 +295,26 @@ class ParticleSystem:
         self._started = bool(started)
         if self.ledger is not None:
             self.ledger.loss[:] = saved["losses"]
+            self.ledger.prescribed_work[:] = saved["prescribed_work"]
+
+
+def continued(saved: Mapping[str, NDArray[Any]], grains: Grains, contact: ContactModel, **options: Any) -> ParticleSystem:
+    """A system that takes the free grains and contacts of a saved one and has prescribed grains of its own.
+
+    Parameters
+    ----------
+    saved : mapping
+        State of a system without prescribed grains, from `ParticleSystem.state`.
+    grains : Grains
+        The same free grains in the same order (`Grains.from_saved`), and the prescribed ones.
+    contact, options
+        As for `ParticleSystem`. Contacts keep their springs if both have the same features.
+    """
+    system = ParticleSystem(grains, contact, **options)
+    system.list.take_over(saved, len(grains))
+    system._started = True
+    system._rebuild()
+    return system
 
 
 def use_threads(threads: int) -> int:

@@ -15,8 +15,8 @@ Array = np.ndarray
 
 # Columns of LedgerArrays.loss [J/m]
 NORMAL_DASHPOT, TANGENTIAL_DASHPOT, SLIDING, ROLLING_DASHPOT, ROLLING_SLIP = 0, 1, 2, 3, 4
-GLOBAL_DAMPING, DAMPING_AHEAD, PRESCRIBED_WORK, WALL_WORK = 5, 6, 7, 8
-LEDGER_COLUMNS = 9
+GLOBAL_DAMPING, DAMPING_AHEAD, WALL_WORK = 5, 6, 7
+LEDGER_COLUMNS = 8
 
 
 class GrainArrays(NamedTuple):
@@ -85,6 +85,7 @@ class LedgerArrays(NamedTuple):
     """Accumulated losses and works of every block."""
 
     loss: Array  # (n_blocks, LEDGER_COLUMNS)
+    prescribed_work: Array  # (n_prescribed,) done by each prescribed grain on the others
 
 
 class LinearNormal(NamedTuple):

@@ -1,7 +1,7 @@
 """Leapfrog (model 1.4): kick by the forces at n, drift to n + 1."""
 
 from particles.kernels.jit import kernel
-from particles.kernels.layout import DAMPING_AHEAD, GLOBAL_DAMPING, PRESCRIBED_WORK
+from particles.kernels.layout import DAMPING_AHEAD, GLOBAL_DAMPING
 
 
 @kernel
@@ -82,7 +82,7 @@ def kick(b, grains, gravity_x, gravity_y, tangential, damping, ledger, dt):
 @kernel
 def prescribed_work(b, grains, ledger, dt):
     """Half a step of the work done by the prescribed grains (block `b`) on the others."""
-    work = 0.0
-    for i in range(grains.block_start[b], grains.block_start[b + 1]):
-        work -= grains.fx[i] * grains.vx[i] + grains.fy[i] * grains.vy[i] + grains.torque[i] * grains.omega[i]
-    ledger.loss[b, PRESCRIBED_WORK] += 0.5 * dt * work
+    first = grains.block_start[b]
+    for i in range(first, grains.block_start[b + 1]):
+        power = grains.fx[i] * grains.vx[i] + grains.fy[i] * grains.vy[i] + grains.torque[i] * grains.omega[i]
+        ledger.prescribed_work[i - first] -= 0.5 * dt * power
