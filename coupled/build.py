@@ -1,0 +1,299 @@
+"""From a typed scene to the objects that are advanced. Strings become objects here and nowhere else."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+import meshes
+import particles as dem
+import structure as fem
+from coupled.errors import LeitoError
+from coupled.glued import GluedGrains
+from coupled.model import Model, Structure
+from coupled.scene import Beam, BodyLoad, BoundaryLoad, PointLoad, RowUnder, Scene, SettledGrains
+from particles.beds import drop_height_on, lattice
+from particles.contact import recipe
+from particles.timestep import require_stable
+
+REFUSED_RATIO, WARNED_RATIO = 2.0, 0.3
+
+Saved = Mapping[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class Built:
+    """A model with what the run and the check want to know of it."""
+
+    model: Model
+    scene: Scene
+    contact: dem.ContactModel | None
+    stiffness_ratio: float
+    stable_dt_ratio: float
+
+
+def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI.Intracomm = MPI.COMM_WORLD) -> Built:
+    """Make the model of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    bed : mapping, optional
+        State of the settled grains, for a scene that names a bed.
+    threads : int
+        For the grains.
+    comm : MPI communicator
+        The structure lives on all ranks, the grains on rank 0.
+
+    Raises
+    ------
+    LeitoError, MeshError, StructureError, ParticleError
+        One sentence, when the parts do not go together.
+    """
+    contact = None if scene.contact is None else contact_model(scene)
+    free = _free_grains(scene, bed) if comm.rank == 0 else None
+    body, glued = None, None
+    if scene.structure is not None:
+        mesh = _mesh(scene, comm, _placement(scene, free, comm))
+        body = _structure(scene, mesh)
+        if scene.interface is not None:
+            glued = _glued(scene, mesh)
+    system = None
+    if comm.rank == 0 and (free is not None or scene.rows):
+        system = _particles(scene, free, glued, contact, bed, threads)
+    model = Model(
+        particles=system,
+        structure=body,
+        glued=glued,
+        substeps=1 if scene.interface is None else scene.interface.substeps,
+        lagged=scene.interface is not None and scene.interface.exchange == "lagged",
+        time_step=scene.time.step,
+    )
+    ratio = _stiffness_ratio(scene, model, contact)
+    dt_ratio = scene.time.step / dem.source_bound(system.grains, contact) if system is not None else 0.0
+    return Built(model, scene, contact, ratio, comm.bcast(dt_ratio, root=0))
+
+
+def contact_model(scene: Scene) -> dem.ContactModel:
+    """The contact law of a scene, its numbers given or from the recipe."""
+    given = scene.contact
+    numbers = given.model_dump(exclude_none=True)
+    may_pull = False
+    if given.recipe is not None:
+        numbers |= _recipe_numbers(scene)
+        may_pull = given.recipe.restitution_at == "zero_overlap"
+    tangential = rolling = None
+    if given.friction is not None:
+        tangential = dem.CoulombFriction(
+            stiffness=numbers["tangential_stiffness"],
+            friction=given.friction,
+            damping=numbers["tangential_damping"],
+        )
+    if given.rolling_friction is not None:
+        rolling = dem.ElasticPlasticRolling(
+            friction=given.rolling_friction,
+            damping_ratio=given.rolling_damping_ratio,
+            stiffness=given.rolling_stiffness,
+        )
+    normal = dem.LinearSpringDashpot(
+        stiffness=numbers["normal_stiffness"], damping=numbers["normal_damping"], may_pull=may_pull
+    )
+    return dem.ContactModel(normal=normal, tangential=tangential, rolling=rolling)
+
+
+def _recipe_numbers(scene: Scene) -> dict[str, float]:
+    """Coefficients for two equal grains of the smallest size (model 1.3)."""
+    wish, grains = scene.contact.recipe, scene.first_grains
+    if grains is None:
+        raise LeitoError("contact.recipe needs free grains, whose mass it uses: give the stiffnesses outright")
+    mass, overlap = grains.smallest_mass, wish.largest_overlap * grains.smallest_radius
+    gravity = math.hypot(*scene.gravity)
+    if wish.drop_height is not None:
+        stiffness = recipe.stiffness_from_drop_height(
+            mass=mass, gravity=gravity, drop_height=wish.drop_height, largest_overlap=overlap
+        )
+    else:
+        stiffness = recipe.stiffness_from_impact_speed(mass=mass, speed=wish.impact_speed, largest_overlap=overlap)
+    options = {"restitution": wish.restitution, "may_pull": wish.restitution_at == "zero_overlap"}
+    tangential = wish.stiffness_ratio * stiffness
+    return {
+        "normal_stiffness": stiffness,
+        "normal_damping": recipe.damping_from_restitution(effective_mass=mass / 2, stiffness=stiffness, **options),
+        "tangential_stiffness": tangential,
+        "tangential_damping": recipe.damping_from_restitution(
+            effective_mass=mass / 2, stiffness=tangential, **options
+        ),
+    }
+
+
+def _free_grains(scene: Scene, bed: Saved | None) -> dem.Grains | None:
+    if scene.grains is None:
+        return None
+    if isinstance(scene.grains, SettledGrains):
+        if bed is None:
+            raise LeitoError(f'grains.bed = "{scene.grains.bed}" has not been settled: run that scene first')
+        return dem.Grains.from_saved(bed)
+    table = scene.grains
+    sizes = [(size.radius, size.count) for size in table.sizes]
+    if table.layout == "list":
+        rows = np.array([(*row, *(0.0,) * (5 - len(row))) for row in table.positions])
+        radius = np.concatenate([np.full(count, size) for size, count in sizes])
+        return dem.Grains.discs(rows[:, :2], radius, table.density, velocity=rows[:, 2:4], spin=rows[:, 4])
+    return lattice(
+        sizes, table.density, width=scene.box.width, spacing=table.spacing, jitter=table.jitter, seed=table.seed
+    )
+
+
+def _mesh(scene: Scene, comm: MPI.Intracomm, centroid: tuple[float, float]) -> meshes.StructureMesh:
+    shape = scene.structure.shape
+    options = {"cell": shape.cell, "order": shape.order, "comm": comm}
+    if isinstance(shape, Beam):
+        corner = (centroid[0] - shape.length / 2, centroid[1] - shape.height / 2)
+        return meshes.beam(
+            length=shape.length, height=shape.height, along=shape.along, across=shape.across, origin=corner, **options
+        )
+    return meshes.tube(
+        outer_radius=shape.outer_radius,
+        inner_radius=shape.inner_radius,
+        around=shape.around,
+        layers=shape.layers,
+        centre=centroid,
+        **options,
+    )
+
+
+def _placement(scene: Scene, free: dem.Grains | None, comm: MPI.Intracomm) -> tuple[float, float]:
+    """Centroid of the structure; `on_bed`: lowered until the first glued grain touches."""
+    place, shape = scene.structure.placement, scene.structure.shape
+    if place.y != "on_bed":
+        return (place.x, place.y + place.gap)
+    height = None
+    if comm.rank == 0:
+        top = float(np.max(free.y[: free.n_free] + free.radius[: free.n_free])) if free is not None else 0.0
+        above = (place.x, top + 2.0 * shape.half_extent[1])
+        glued = _glued(scene, _mesh(scene, MPI.COMM_SELF, above))
+        radius = np.full(len(glued), glued.radius)
+        fall = min(
+            drop_height_on(free, glued.reference, radius) if free is not None else math.inf,
+            float(np.min(glued.reference[:, 1] - radius)),
+        )
+        height = above[1] - fall + place.gap
+    return (place.x, comm.bcast(height, root=0))
+
+
+def _glued(scene: Scene, mesh: meshes.StructureMesh) -> GluedGrains:
+    table = scene.interface
+    return GluedGrains(
+        mesh.outer_polyline,
+        per_facet=table.grains_per_facet(scene.structure.shape),
+        boundaries=table.boundaries,
+        diameter=table.diameter,
+        mean_velocity=table.velocity == "mean",
+    )
+
+
+def _structure(scene: Scene, mesh: meshes.StructureMesh) -> Structure:
+    table = scene.structure
+    step = scene.time.step * (1 if scene.interface is None else scene.interface.substeps)
+    if table.kind == "rigid":
+        return fem.PrescribedRigid(mesh, path=np.array(table.path.points), time_step=step)
+    loads = [_load(load, mesh) for load in table.loads]
+    if table.kind == "free_rigid":
+        return fem.FreeRigid(mesh, density=table.density, time_step=step, loads=loads)
+    body = fem.ElasticStructure(
+        mesh,
+        material=fem.PlaneStrain(
+            youngs_modulus=table.youngs_modulus, poissons_ratio=table.poissons_ratio, density=table.density
+        ),
+        time_step=step,
+        damping=None
+        if table.rayleigh is None
+        else fem.Rayleigh(
+            mass_factor=table.rayleigh.mass_factor, stiffness_factor=table.rayleigh.stiffness_factor
+        ),
+        scheme=fem.Newmark(beta=table.newmark.beta, gamma=table.newmark.gamma),
+        loads=loads,
+    )
+    if table.initial is not None:
+        body.release_from_mode(table.initial.mode, table.initial.amplitude)
+    return body
+
+
+def _load(load: BoundaryLoad | BodyLoad | PointLoad, mesh: meshes.StructureMesh) -> Any:
+    if isinstance(load, BoundaryLoad):
+        return fem.BoundaryLoad(boundary=load.boundary, total_force=load.total_force, ramp_time=load.ramp_time)
+    if isinstance(load, BodyLoad):
+        return fem.BodyForce(acceleration=load.acceleration, ramp_time=load.ramp_time)
+    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+    point = tuple((low + high) / 2 + np.array(load.point))
+    return fem.PointLoad(point=point, force=load.force, ramp_time=load.ramp_time)
+
+
+def _particles(
+    scene: Scene,
+    free: dem.Grains | None,
+    glued: GluedGrains | None,
+    contact: dem.ContactModel,
+    bed: Saved | None,
+    threads: int,
+) -> dem.ParticleSystem:
+    grains = free if free is not None else dem.Grains.discs(np.zeros((0, 2)), np.zeros(0), 1.0)
+    if glued is not None:
+        grains = grains.with_prescribed(glued.reference, glued.radius, Model.GLUED)
+    for number, row in enumerate(scene.rows):
+        grains = grains.with_prescribed(_row_places(scene, row, glued), row.radius, Model.GLUED + 1 + number)
+    require_stable(grains, contact, scene.time.step)
+    options = {
+        "time_step": scene.time.step,
+        "walls": [] if scene.box is None else dem.box(scene.box.width, scene.box.height, scene.box.walls),
+        "gravity": scene.gravity,
+        "threads": threads,
+        "damping": None
+        if scene.damping is None
+        else dem.GlobalDamping(translational=scene.damping.translational, rotational=scene.damping.rotational),
+    }
+    if isinstance(scene.grains, SettledGrains):
+        system = dem.continued(bed, grains, contact, **options)
+    else:
+        system = dem.ParticleSystem(grains, contact, **options)
+    bodies = grains.bodies()
+    for number, row in enumerate(scene.rows):
+        if not isinstance(row, RowUnder):
+            system.set_velocity(bodies[Model.GLUED + 1 + number], np.array(row.velocity))
+    return system
+
+
+def _row_places(scene: Scene, row: Any, glued: GluedGrains | None) -> NDArray[np.float64]:
+    if not isinstance(row, RowUnder):
+        return np.linspace(row.start, row.end, row.count)
+    if glued is None:
+        raise LeitoError(f'rows under "{row.under}" need glued grains: add the table [interface]')
+    polyline = glued.polyline
+    own = GluedGrains(
+        polyline,
+        per_facet=scene.interface.grains_per_facet(scene.structure.shape),
+        boundaries=(row.under,),
+        diameter=2.0 * glued.radius,
+    )
+    return own.reference - np.array([0.0, glued.radius + row.radius])
+
+
+def _stiffness_ratio(scene: Scene, model: Model, contact: dem.ContactModel | None) -> float:
+    """The coupling's r; refused above the scheme's limit."""
+    if model.glued is None:
+        return 0.0
+    ratio = model.glued.stiffness_ratio(contact.normal.stiffness, model.structure.boundary_mass, model.window)
+    limit = scene.interface.largest_stiffness_ratio or REFUSED_RATIO
+    if ratio > limit:
+        raise LeitoError(
+            f"stiffness ratio r = k dt^2/M = {ratio:.3g} of the coupling is above {limit:g}, where the exchange is "
+            f"unstable: take time.step at most {scene.time.step * math.sqrt(WARNED_RATIO / ratio):.2g} s, fewer "
+            "interface.substeps, or raise interface.largest_stiffness_ratio knowingly"
+        )
+    return ratio

@@ -1,0 +1,185 @@
+"""What is advanced: grains, a structure, or both with the exchange between them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from coupled.glued import GluedGrains
+from meshes import BoundaryPolyline
+from particles import ParticleSystem
+from structure import StructureEnergies, StructureFields, StructurePeaks
+
+Floats = NDArray[np.float64]
+
+
+class Structure(Protocol):
+    """What the coupling asks of a structure, elastic or rigid."""
+
+    comm: MPI.Intracomm
+    polyline: BoundaryPolyline
+    mass: float
+    boundary_mass: Floats
+    boundary_displacement: Floats
+    time_step: float
+
+    @property
+    def time(self) -> float: ...
+    def advance(self, boundary_force: Floats) -> None: ...
+    def predict(self, interval: float, order: int = 2) -> Floats: ...
+    def energies(self) -> StructureEnergies: ...
+    def centroid(self) -> Floats: ...
+    def mean_rotation(self) -> float: ...
+    def external_force(self) -> Floats: ...
+    def peaks(self) -> StructurePeaks: ...
+    def fields(self) -> StructureFields: ...
+    def state(self) -> dict[str, Floats]: ...
+    def restore(self, state: dict[str, Floats]) -> None: ...
+
+
+class Model:
+    """Grains, a structure, or both, advanced in steps of the structure.
+
+    One coupled step of length ``H = substeps dt``:
+
+    - predicted (default): the glued grains move to the predicted boundary (``u + H v + H^2 a/2``;
+      ``u + H v`` with sub-cycling) while the grains take their `substeps`; the mean contact force of
+      the window goes to the nodes at the new time; the structure steps.
+    - lagged (the source's order): the structure steps with the forces of the last window; the glued
+      grains move to where it went while the grains take their substeps.
+
+    Under MPI the structure lives on all ranks, the grains on rank 0, where `particles` is not None.
+
+    Parameters
+    ----------
+    particles : ParticleSystem, optional
+    structure : Structure, optional
+    glued : GluedGrains, optional
+        Needed with both; its grains are the prescribed body `GLUED` of `particles`.
+    substeps : int
+        Grain steps per structure step.
+    lagged : bool
+        The source's order of the exchange.
+    """
+
+    GLUED = 0
+
+    def __init__(
+        self,
+        *,
+        particles: ParticleSystem | None = None,
+        structure: Structure | None = None,
+        glued: GluedGrains | None = None,
+        substeps: int = 1,
+        lagged: bool = False,
+        time_step: float,
+    ) -> None:
+        self.particles, self.structure, self.glued = particles, structure, glued
+        self.substeps, self.lagged = substeps, lagged
+        self.window = substeps * time_step
+        self.steps_done = 0
+        self.seconds = {"grains": 0.0, "structure": 0.0, "exchange": 0.0}
+        self._boundary = None if structure is None else structure.boundary_displacement
+        self.glued_force = np.zeros((0 if glued is None else len(glued), 2))
+        self.nodal_force = np.zeros_like(structure.polyline.points) if structure is not None else np.zeros((0, 2))
+        if particles is not None and glued is not None:
+            self.places = particles.grains.bodies()[self.GLUED]
+            particles.start()
+            self._collect(particles.force_on(self.places))
+
+    @property
+    def time(self) -> float:
+        """Present time [s]."""
+        return self.steps_done * self.window
+
+    def advance(self, steps: int) -> None:
+        """Take `steps` structure steps (grain steps, if there is no structure)."""
+        if self.structure is None:
+            started = time.perf_counter()
+            self.particles.advance(steps * self.substeps)
+            self.seconds["grains"] += time.perf_counter() - started
+        elif self.glued is None:
+            started = time.perf_counter()
+            for _ in range(steps):
+                self.structure.advance(self.nodal_force)
+            self.seconds["structure"] += time.perf_counter() - started
+        else:
+            step = self._lagged_step if self.lagged else self._predicted_step
+            for _ in range(steps):
+                step()
+        self.steps_done += steps
+
+    def _predicted_step(self) -> None:
+        order = 2 if self.substeps == 1 else 1
+        started = time.perf_counter()
+        self._move_grains(self.structure.predict(self.window, order))
+        moved = time.perf_counter()
+        self.structure.advance(self.nodal_force)
+        self.seconds["structure"] += time.perf_counter() - moved
+        self.seconds["exchange"] += moved - started
+
+    def _lagged_step(self) -> None:
+        started = time.perf_counter()
+        self.structure.advance(self.nodal_force)
+        stepped = time.perf_counter()
+        self._move_grains(self.structure.boundary_displacement)
+        self.seconds["structure"] += stepped - started
+        self.seconds["exchange"] += time.perf_counter() - stepped
+
+    def _move_grains(self, displacement: Floats) -> None:
+        """Take the grains through one window that ends with the boundary at `displacement`."""
+        if self.particles is None:
+            return
+        particles, glued = self.particles, self.glued
+        velocity = glued.velocities((displacement - self._boundary) / self.window)
+        self._boundary = displacement
+        particles.steer(self.places, glued.places(displacement), self.window, velocity)
+        started = time.perf_counter()
+        particles.advance(self.substeps)
+        taken = time.perf_counter() - started
+        self.seconds["grains"] += taken
+        self.seconds["exchange"] -= taken
+        if self.substeps == 1:
+            self._collect(particles.force_on(self.places))
+        else:
+            self._collect(particles.impulse_on(self.places) / self.window)
+
+    def _collect(self, force: Floats) -> None:
+        self.glued_force = force
+        self.nodal_force = self.glued.nodal_forces(force)
+
+    @property
+    def reaction(self) -> Floats:
+        """Resultant (2,) [N/m] of the grains on the structure in the last window."""
+        return self.glued_force.sum(axis=0)
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """Everything that is needed to go on with the same bits; whole on rank 0."""
+        saved: dict[str, NDArray[Any]] = {"model.steps_done": np.array(self.steps_done)}
+        saved["model.glued_force"] = self.glued_force.copy()
+        if self.structure is not None:
+            saved["model.boundary"] = self._boundary.copy()
+            saved |= {f"structure.{name}": array for name, array in self.structure.state().items()}
+        if self.particles is not None:
+            saved |= {f"particles.{name}": array for name, array in self.particles.state().items()}
+        return saved
+
+    def restore(self, saved: Mapping[str, NDArray[Any]]) -> None:
+        """Go back to a state of the same scene; rank 0's counts."""
+        self.steps_done = int(saved["model.steps_done"])
+        if self.structure is not None:
+            self.structure.restore(_part(saved, "structure."))
+            self._boundary = np.array(saved["model.boundary"])
+        if self.particles is not None:
+            self.particles.restore(_part(saved, "particles."))
+            if self.glued is not None:
+                self._collect(np.array(saved["model.glued_force"]))
+
+
+def _part(saved: Mapping[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:
+    return {name.removeprefix(prefix): array for name, array in saved.items() if name.startswith(prefix)}
