@@ -131,14 +131,14 @@ class ParticleSystem:
         self._started = True
 
     def advance(self, steps: int) -> None:
-        """Take `steps` leapfrog steps, making new contact lists where needed."""
+        """Take `steps` leapfrog steps, making new contact lists where needed; 0 only loads the compiled code."""
         self.start()
         self.impulse[:] = 0.0
         threaded = self.threads > 1 and len(self.blocks) > 2
         step = stepping.advance_threaded if threaded else stepping.advance
         laws, damping, drifted = self._laws(), self._damping(), False
         left = int(steps)
-        while left > 0:
+        while True:
             arrays, listed = self._arrays(), self.list
             done, drifted = step(
                 arrays, listed.pairs, listed.walls, self.gravity, *laws, damping, self.ledger,
@@ -146,8 +146,9 @@ class ParticleSystem:
             )  # fmt: skip
             left -= done
             self.steps_done += done
-            if drifted:
-                self._rebuild()
+            if not drifted:
+                return
+            self._rebuild()
 
     def _rebuild(self) -> None:
         self.list.rebuild(self.grains, self.time_step)

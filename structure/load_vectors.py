@@ -29,7 +29,7 @@ class LoadVectors:
         rows = [_vector(body, load) for load in self._loads]
         self.full = np.array(rows).reshape(len(rows), body.unknowns)
         self.constant_from = max((load.ramp_time for load in self._loads), default=0.0)
-        shares = self.full.reshape(len(rows), -1, 2).sum(axis=1)
+        shares = self.full.reshape(len(rows), body.unknowns // 2, 2).sum(axis=1)
         self._resultants = body.comm.allreduce(shares)
 
     def factors(self, time: float) -> NDArray[np.float64]:

@@ -1,0 +1,46 @@
+"""What a user should know of a run before it starts and after it ends."""
+
+from __future__ import annotations
+
+import math
+
+from coupled.build import WARNED_RATIO, Built
+from coupled.observe import Observation
+
+LARGE_STRAIN, LARGE_ROTATION = 0.02, 0.1
+
+
+def before(built: Built) -> list[str]:
+    """Sentences on the time step, the coupling and the damping of a scene."""
+    scene, said = built.scene, []
+    if built.stable_dt_ratio > 1.0:
+        said.append(
+            f"time.step is {built.stable_dt_ratio:.2f} times the source's bound 0.5 sqrt(m/k): watch the energy ledger"
+        )
+    if built.stiffness_ratio > WARNED_RATIO:
+        said.append(
+            f"stiffness ratio r = {built.stiffness_ratio:.2f} of the coupling is above {WARNED_RATIO:g} (stable up to 2): "
+            "a smaller time.step makes the interface more accurate"
+        )
+    if scene.interface is not None and scene.interface.exchange == "lagged" and built.stiffness_ratio > 0.0:
+        said.append('interface.exchange = "lagged" feeds energy into the interface at any step; "predicted" does not')
+    rayleigh = scene.structure.rayleigh if scene.structure is not None else None
+    if rayleigh is not None and rayleigh.stiffness_factor > 0.0:
+        limit = 2.0 / rayleigh.stiffness_factor
+        said.append(
+            f"Rayleigh's stiffness_factor over-damps every mode above {limit:.4g} rad/s ({limit / (2 * math.pi):.4g} Hz)"
+        )
+    return said
+
+
+def after(built: Built, seen: Observation, largest_strain: float) -> list[str]:
+    """Sentences on results that leave the theory in use."""
+    said = []
+    if built.scene.structure is not None and built.scene.structure.kind == "elastic":
+        if largest_strain > LARGE_STRAIN:
+            said.append(f"largest strain {largest_strain:.3g} leaves the small-strain theory: take the stresses as a guide")
+        if abs(seen.numbers["rotation"]) > LARGE_ROTATION:
+            said.append(
+                f"the structure has turned by {seen.numbers['rotation']:.3g} rad, which the linear theory does not follow"
+            )
+    return said

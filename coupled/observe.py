@@ -1,0 +1,100 @@
+"""One row of numbers that tell how the model stands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coupled.balance import Balance, take_balance
+from coupled.model import Model
+from particles import ContactLook
+
+UNITS = {
+    "time": "s",
+    "applied_x": "N/m",
+    "applied_y": "N/m",
+    "reaction_x": "N/m",
+    "reaction_y": "N/m",
+    "centroid_x": "m",
+    "centroid_y": "m",
+    "rotation": "rad",
+    "max_von_mises": "Pa",
+    "max_strain": "-",
+    "contacts": "-",
+    "coordination": "-",
+    "deepest_overlap": "-",
+    "fastest_grain": "m/s",
+    "highest_grain": "m",
+    "ledger_error": "J/m",
+    "ledger_relative_error": "-",
+    "interface_residual": "J/m",
+    "momentum_residual": "-",
+}
+
+
+@dataclass(frozen=True)
+class Observation:
+    """Numbers by name (units in `UNITS`; ledger lines are J/m), with what they came from."""
+
+    numbers: dict[str, float]
+    balance: Balance
+    look: ContactLook | None
+
+    def row(self) -> dict[str, float]:
+        """Numbers by name with unit, for the history."""
+        return {f"{name} [{UNITS.get(name, 'J/m')}]": value for name, value in self.numbers.items()}
+
+
+def observe(model: Model, start: dict[str, float] | None) -> Observation:
+    """Look at the model; `start` are the ledger's entries at the beginning. Collective under MPI."""
+    look = model.particles.look() if model.particles is not None else None
+    balance = take_balance(model, look, start)
+    numbers = {"time": model.time}
+    if model.structure is not None:
+        numbers |= _structure_numbers(model)
+    if model.particles is not None and model.particles.grains.n_free:
+        numbers |= _grain_numbers(model, look)
+    numbers["ledger_error"], numbers["ledger_relative_error"] = balance.error, balance.relative_error
+    if model.glued is not None:
+        numbers["interface_residual"] = balance.interface_residual
+    if model.particles is not None:
+        numbers["momentum_residual"] = momentum_residual(model)
+    return Observation(numbers | balance.entries, balance, look)
+
+
+def momentum_residual(model: Model) -> float:
+    """Force on grains and walls plus force on nodes, over the sum of magnitudes: round-off."""
+    residual = model.particles.force_residual()
+    scale = float(np.abs(model.glued_force).sum())
+    if scale > 0.0:
+        gap = np.abs(model.nodal_force.sum(axis=0) - model.glued_force.sum(axis=0)).max()
+        residual = max(residual, float(gap) / scale)
+    return residual
+
+
+def _structure_numbers(model: Model) -> dict[str, float]:
+    body = model.structure
+    applied, centroid, peaks = body.external_force(), body.centroid(), body.peaks()
+    numbers = {"applied_x": applied[0], "applied_y": applied[1]}
+    if model.glued is not None:
+        numbers |= {"reaction_x": model.reaction[0], "reaction_y": model.reaction[1]}
+    return numbers | {
+        "centroid_x": centroid[0],
+        "centroid_y": centroid[1],
+        "rotation": body.mean_rotation(),
+        "max_von_mises": peaks.von_mises,
+        "max_strain": peaks.strain,
+    }
+
+
+def _grain_numbers(model: Model, look: ContactLook) -> dict[str, float]:
+    grains = model.particles.grains
+    free = slice(grains.n_free)
+    return {
+        "contacts": look.count,
+        "coordination": float(look.contacts[free].mean()),
+        "deepest_overlap": look.deepest,
+        "fastest_grain": float(np.sqrt(np.max(grains.vx[free] ** 2 + grains.vy[free] ** 2))),
+        "highest_grain": float(np.max(grains.y[free] + grains.radius[free])),
+    }

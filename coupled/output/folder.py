@@ -1,0 +1,95 @@
+"""The folder of a run: what may be written where, and when it is taken up again."""
+
+from __future__ import annotations
+
+import shutil
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from coupled.errors import LeitoError
+from coupled.output import checkpoint
+from coupled.scene import Scene, dump_scene
+
+SCENE = "scene.toml"
+SUMMARY = "summary.json"
+OURS = (
+    SCENE, SUMMARY, checkpoint.NAME, "history.csv", "grains.xdmf", "structure.xdmf", "provenance.json", "log.txt",
+    "frames", "figures",
+)  # fmt: skip
+FREE_TO_CHANGE = ("time.duration", "output.", "title")  # when a run is taken up again
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """A folder that is ready: `saved` holds the checkpoint of a run to take up again."""
+
+    path: Path
+    saved: dict[str, Any] | None
+
+    def file(self, name: str) -> Path:
+        return self.path / name
+
+
+def open_folder(path: Path, scene: Scene, *, resume: bool, overwrite: bool) -> RunFolder:
+    """Make or take up the folder of a run.
+
+    Raises
+    ------
+    LeitoError
+        If it holds results and neither `resume` nor `overwrite` is given, or it belongs to
+        another scene.
+    """
+    if path.exists() and not path.is_dir():
+        raise LeitoError(f"{path} is a file; give another folder with --out")
+    holds = path.is_dir() and any(path.iterdir())
+    saved = None
+    if holds and not (resume or overwrite):
+        raise LeitoError(f"{path} holds a run already; go on with --resume, or start anew with --overwrite or --out")
+    if holds and resume:
+        _require_same_scene(path, scene)
+        if (path / checkpoint.NAME).exists():
+            saved, _ = checkpoint.load(path / checkpoint.NAME)
+    elif holds:
+        _clear(path)
+    path.mkdir(parents=True, exist_ok=True)
+    (path / SCENE).write_text(dump_scene(scene))
+    return RunFolder(path, saved)
+
+
+def _clear(path: Path) -> None:
+    """Remove what a run of ours left, and nothing else."""
+    for name in OURS:
+        place = path / name
+        if place.is_dir():
+            shutil.rmtree(place)
+        elif place.exists():
+            place.unlink()
+
+
+def _require_same_scene(path: Path, scene: Scene) -> None:
+    try:
+        old = _flat(tomllib.loads((path / SCENE).read_text()))
+    except (OSError, tomllib.TOMLDecodeError):
+        raise LeitoError(f"{path} holds no readable {SCENE}; start anew with --overwrite") from None
+    new = _flat(tomllib.loads(dump_scene(scene)))
+    for key in sorted(old.keys() | new.keys()):
+        if old.get(key) != new.get(key) and not key.startswith(FREE_TO_CHANGE):
+            raise LeitoError(
+                f"{key} = {new.get(key)} differs from {old.get(key)} of the run in {path}; "
+                "a run is resumed with its own scene: use another folder with --out"
+            )
+
+
+def _flat(table: Any, prefix: str = "") -> dict[str, Any]:
+    if isinstance(table, dict):
+        items = table.items()
+    elif isinstance(table, list) and table and isinstance(table[0], dict):
+        items = ((str(k), item) for k, item in enumerate(table))
+    else:
+        return {prefix: table}
+    flat: dict[str, Any] = {}
+    for key, value in items:
+        flat |= _flat(value, f"{prefix}.{key}" if prefix else str(key))
+    return flat

@@ -1,0 +1,61 @@
+"""history.csv: one row per interval, names with units in the header."""
+
+from __future__ import annotations
+
+import csv
+import os
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+NAME = "history.csv"
+
+
+class History:
+    """Rows of numbers against time, flushed as they come.
+
+    Parameters
+    ----------
+    path : Path
+    keep_until : float, optional
+        Go on in an existing file: keep its rows up to this time [s] and drop those after it, which
+        a killed run had written since its checkpoint.
+    """
+
+    def __init__(self, path: Path, *, keep_until: float | None = None) -> None:
+        self.path = path
+        self._names: list[str] = []
+        if keep_until is not None and path.exists():
+            self._keep(keep_until)
+
+    def _keep(self, until: float) -> None:
+        with open(self.path, newline="") as file:
+            rows = [row for row in csv.reader(file)]
+        if not rows:
+            return
+        self._names = rows[0]
+        # times are written exactly (shortest repr), the margin only covers a cut last row
+        whole = [row for row in rows[1:] if len(row) == len(rows[0]) and float(row[0]) <= until]
+        beside = self.path.with_suffix(".part")
+        with open(beside, "w", newline="") as file:
+            csv.writer(file).writerows([rows[0], *whole])
+        os.replace(beside, self.path)
+
+    def write(self, row: dict[str, float]) -> None:
+        """Append a row; the first one makes the header."""
+        new = not self._names
+        with open(self.path, "w" if new else "a", newline="") as file:
+            writer = csv.writer(file)
+            if new:
+                self._names = list(row)
+                writer.writerow(self._names)
+            writer.writerow([repr(float(row[name])) for name in self._names])
+
+
+def read_history(path: Path) -> dict[str, NDArray[np.float64]]:
+    """Columns of a history by name without the unit."""
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    table = np.array(rows[1:], dtype=float).reshape(-1, len(rows[0]))
+    return {name.partition(" [")[0]: column for name, column in zip(rows[0], table.T, strict=True)}

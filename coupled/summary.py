@@ -1,0 +1,90 @@
+"""What a run came to: numbers by name, and the lines a user reads."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from coupled.build import Built
+from coupled.observe import Observation
+
+
+def summarise(
+    built: Built, seen: Observation, first: dict[str, float], peaks: dict[str, float], seconds: dict[str, float]
+) -> dict[str, Any]:
+    """Numbers of `summary.json`.
+
+    Parameters
+    ----------
+    built, seen
+        The model and its last observation.
+    first : dict
+        Numbers of the first observation.
+    peaks : dict
+        Largest values over all observations.
+    seconds : dict
+        Wall time per part [s].
+    """
+    model, numbers = built.model, seen.numbers
+    wall = sum(seconds.values())
+    free = model.particles.grains.n_free if model.particles is not None else 0
+    steps = model.steps_done * model.substeps
+    summary: dict[str, Any] = {
+        "title": built.scene.title,
+        "simulated_seconds": model.time,
+        "steps": steps,
+        "wall_seconds": wall,
+        "wall_seconds_by_part": seconds,
+        "free_grains": free,
+        "particle_steps_per_second": peaks["particle_steps"] / seconds["grains"] if seconds.get("grains") else 0.0,
+        "stable_dt_ratio": built.stable_dt_ratio,
+        "stiffness_ratio_r": built.stiffness_ratio,
+        "ledger_relative_error": numbers["ledger_relative_error"],
+        "ledger_error": numbers["ledger_error"],
+        "energy_turned_over": seen.balance.throughput,
+        "interface_residual": numbers.get("interface_residual", 0.0),
+        "momentum_residual_max": peaks["momentum_residual"],
+    }
+    if model.structure is not None:
+        summary |= {
+            "applied_y": numbers["applied_y"],
+            "reaction_y": numbers.get("reaction_y", 0.0),
+            "centroid_y": numbers["centroid_y"],
+            "centroid_drop": first["centroid_y"] - numbers["centroid_y"],
+            "rotation": numbers["rotation"],
+            "max_von_mises": peaks["max_von_mises"],
+            "max_strain": peaks["max_strain"],
+        }
+    return summary
+
+
+def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
+    """The lines printed at the end of a run."""
+    wall = summary["wall_seconds"]
+    lines = [f"{summary['title']}: {summary['simulated_seconds']:g} s simulated in {wall:.1f} s"]
+    if "applied_y" in summary:
+        lines += [
+            f"  reaction of the grains   {summary['reaction_y']:12.2f} N/m   against an applied load of "
+            f"{summary['applied_y']:.2f} N/m",
+            f"  centroid drop            {1e3 * summary['centroid_drop']:12.3f} mm    rotation "
+            f"{summary['rotation']:.4f} rad",
+            f"  largest von Mises        {summary['max_von_mises'] / 1e6:12.4f} MPa   largest strain "
+            f"{summary['max_strain']:.3g}",
+        ]
+    lines += [
+        f"  energy-ledger error      {summary['ledger_relative_error']:12.2e}       of "
+        f"{summary['energy_turned_over']:.4g} J/m turned over",
+        f"  momentum residual        {summary['momentum_residual_max']:12.2e}       of the contact forces",
+    ]
+    if summary["free_grains"]:
+        lines.append(
+            f"  particle-steps per s     {summary['particle_steps_per_second']:12.3g}       time step "
+            f"{100 * summary['stable_dt_ratio']:.0f} % of the source's bound"
+        )
+    if summary["stiffness_ratio_r"]:
+        lines.append(f"  stiffness ratio r        {summary['stiffness_ratio_r']:12.3g}       stable up to 2")
+    parts = ", ".join(f"{name} {seconds:.1f}" for name, seconds in summary["wall_seconds_by_part"].items() if seconds)
+    lines.append(f"  wall time [s]            {parts}")
+    lines.append(f"  files in                 {folder}")
+    lines += [f"  picture                  {path}" for path in pictures]
+    return "\n".join(lines)
