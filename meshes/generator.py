@@ -112,7 +112,9 @@ def _generate(
         gmsh.model.mesh.clear([(0, point) for point in drawing.auxiliary])
         gmsh.model.mesh.renumberNodes()
     _snap(drawing.snap)
-    points = np.ascontiguousarray(gmshio.extract_geometry(gmsh.model)[:, :2])
+    places = gmshio.extract_geometry(gmsh.model)
+    points = np.empty((len(places), 2))  # of the plain type: gmsh's own is unknown to mpi4py
+    points[:] = places[:, :2]
     cells = np.vstack([_connectivity(2, surface) for surface in drawing.surfaces])
     edges = {
         name: np.vstack([_connectivity(1, curve) for curve in drawing.curves[name]])

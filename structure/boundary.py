@@ -25,7 +25,9 @@ def agreed_force(
             f"boundary_force has shape {np.shape(force)}: one force per boundary node, {shape}, "
             "is needed"
         )
-    counting = np.array(force, dtype=float) if comm.rank == 0 else np.empty(shape)
+    counting = np.empty(shape)
+    if comm.rank == 0:
+        counting[:] = force
     if comm.size > 1:
         comm.Bcast(counting, root=0)
     return counting

@@ -251,6 +251,7 @@ class ElasticStructure:
             arrays += (increment,)
         values, sums = self._exchange.read(arrays, shares)
         self.boundary_displacement, self.boundary_velocity, self.boundary_acceleration = values[:3]
+        stepper.carried = self.boundary_displacement[0]
         return sums, values[3] if increment is not None else None
 
     def _nodal(self, name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:

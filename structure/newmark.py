@@ -46,7 +46,8 @@ class NewmarkStepper:
     The arrays `displacement` [m], `velocity` [m/s], `acceleration` [m/s^2], `force` [N/m] and
     `increment` [m] (of the last step) have shape (owned unknowns,) and are the memory of PETSc
     vectors: write into them, never replace them. ``M + gamma dt C + beta dt^2 K`` is factorised
-    once.
+    once. `carried` (2,) [m] is a translation near that of the body: K times a translation is zero,
+    so it is taken off before the product, whose round-off would otherwise grow with the path.
     """
 
     def __init__(
@@ -70,7 +71,10 @@ class NewmarkStepper:
         self.force, self._f = arrays["force"], vectors["force"]
         self.increment, self._d = arrays["increment"], vectors["increment"]
         self._product_array, self._product = arrays["product"], vectors["product"]
-        self._predicted = self._u.duplicate()
+        self.carried = np.zeros(2)
+        relative = np.zeros_like(self.displacement)
+        self._relative_array, self._relative_pairs = relative, relative.reshape(-1, 2)
+        self._relative = PETSc.Vec().createWithArray(relative, comm=mass.comm)
         self._rhs = self._u.duplicate()
         effective = mass.copy()
         same = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
@@ -81,7 +85,8 @@ class NewmarkStepper:
 
     def start(self) -> None:
         """Acceleration that is in equilibrium with displacement, velocity and force."""
-        self._residual(self._u)
+        self._u.copy(self._relative)
+        self._residual()
         if self._rhs.norm() == 0.0:
             self._a.set(0.0)
         else:
@@ -92,9 +97,9 @@ class NewmarkStepper:
         dt, u, v, a, d = self._dt, self._u, self._v, self._a, self._d
         d.axpby(dt, 0.0, v)
         d.axpy((0.5 - self._beta) * dt**2, a)
-        self._predicted.waxpy(1.0, d, u)
+        self._relative.waxpy(1.0, d, u)
         v.axpy((1.0 - self._gamma) * dt, a)
-        self._residual(self._predicted)
+        self._residual()
         self._solve(self._rhs, a)
         d.axpy(self._beta * dt**2, a)
         u.axpy(1.0, d)
@@ -118,13 +123,16 @@ class NewmarkStepper:
 
     def strain(self) -> float:
         """This rank's share of ``u . K u/2`` [J/m]."""
-        self._stiffness.mult(self._u, self._product)
-        return float(self.displacement.dot(self._product_array)) / 2
+        self._u.copy(self._relative)
+        self._relative_pairs -= self.carried
+        self._stiffness.mult(self._relative, self._product)
+        return float(self._relative_array.dot(self._product_array)) / 2
 
-    def _residual(self, displacement: PETSc.Vec) -> None:
-        """``rhs = f - K displacement - C v``."""
+    def _residual(self) -> None:
+        """``rhs = f - K u - C v`` with u in `_relative`, of which `carried` is taken off."""
         rhs = self._rhs
-        self._stiffness.mult(displacement, rhs)
+        self._relative_pairs -= self.carried
+        self._stiffness.mult(self._relative, rhs)
         if self._damping is not None:
             self._damping.multAdd(self._v, rhs, rhs)
         rhs.aypx(-1.0, self._f)
