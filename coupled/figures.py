@@ -83,7 +83,7 @@ def configuration(run: _Files) -> Figure | None:
     """Grains coloured by summed overlap, the structure by von Mises."""
     if run.grains is None and run.structure is None:
         return None
-    figure, axes = _new(run, 4.6)
+    figure, axes = _new(run)
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
     moments = []
     if run.grains is not None:
@@ -97,6 +97,8 @@ def configuration(run: _Files) -> Figure | None:
         low, high = np.minimum(low, places.min(axis=0)), np.maximum(high, places.max(axis=0))
         moments.append(float(run.structure["time"]))
     margin = 0.02 * float((high - low).max())
+    shape = float(np.clip((high[1] - low[1] + 2 * margin) / (high[0] - low[0] + 2 * margin), 0.1, 1.0))
+    figure.set_size_inches(WIDTH, 0.85 * WIDTH * shape + 1.6)
     axes.set(
         xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal",
         xlabel="x [m]", ylabel="y [m]", title=f"{run.title}, t = {max(moments):g} s",
@@ -134,7 +136,7 @@ def _draw_grains(
     discs.set_array(1e6 * overlap[order])
     discs.set_clim(0.0, max(1e6 * top, 1e-12))
     axes.add_collection(discs)
-    figure.colorbar(discs, ax=axes, label="summed overlap [um]", orientation="horizontal", shrink=0.6, extend="max")
+    figure.colorbar(discs, ax=axes, label="summed overlap [um]", orientation="horizontal", shrink=0.6, aspect=40, extend="max")
 
 
 def _draw_structure(figure: Figure, axes: Axes, places: np.ndarray, frame: dict[str, np.ndarray]) -> None:
@@ -144,7 +146,7 @@ def _draw_structure(figure: Figure, axes: Axes, places: np.ndarray, frame: dict[
     axes.add_collection(cells)
     if stress.any():
         cells.set_array(stress / 1e6)
-        figure.colorbar(cells, ax=axes, label="von Mises stress [MPa]", shrink=0.8)
+        figure.colorbar(cells, ax=axes, label="von Mises [MPa]", aspect=15)
     else:
         cells.set_facecolor("0.55")
 

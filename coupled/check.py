@@ -1,0 +1,148 @@
+"""What a scene would cost and how close it is to its limits, before it runs."""
+
+from __future__ import annotations
+
+import math
+import os
+import time
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+
+from coupled import bed as beds
+from coupled import cautions
+from coupled.build import Built, build
+from coupled.output.folder import SUMMARY
+from coupled.scene import Scene, SettledGrains
+from particles import source_bound
+from particles.timestep import SOURCE_FACTOR
+
+Row = tuple[str, str, str]
+TRIED = 50  # steps timed for the estimate
+SETTLED_OVER_LOOSE = 2.3  # cost of a step of settled grains over that of loose ones, as `make bench` measures
+BYTES_PER_CONTACT = 60  # slot, history and dashpots of one listed pair
+LISTED_PAIRS = 2.5  # per grain, measured in settled beds
+
+
+def check_scene(scene: Scene) -> list[Row]:
+    """Build a scene, try a few steps, and tell what it is made of.
+
+    A scene that names a bed is tried on that bed if a run has settled it in `runs` already. If not,
+    its grains stand on the lattice: counts and limits are the same, the time is estimated.
+
+    Returns
+    -------
+    Rows (section, quantity, value).
+    """
+    settled = _settled_bed(scene)
+    threads = max(1, (os.cpu_count() or 1) // MPI.COMM_WORLD.size)
+    tried = scene if settled is not None else _on_lattice(scene)
+    built = build(tried, bed=settled, threads=threads)
+    rows = [("scene", "title", scene.title), ("scene", "models", ", ".join(models(scene)))]
+    rows += _grain_rows(built) + _structure_rows(scene, built)
+    rows += _cost_rows(scene, built, SETTLED_OVER_LOOSE if settled is None else 1.0)
+    return rows + [("note", "", sentence) for sentence in cautions.before(built)]
+
+
+def models(scene: Scene) -> list[str]:
+    """The features that a scene names; whatever it does not name is not computed."""
+    named = {
+        "free grains": scene.grains is not None,
+        "friction": scene.contact is not None and scene.contact.friction is not None,
+        "rolling resistance": scene.contact is not None and scene.contact.rolling_friction is not None,
+        "global damping": scene.damping is not None,
+        "walls": scene.box is not None and bool(scene.box.walls),
+        "rows of fixed grains": bool(scene.rows),
+        "gravity": any(scene.gravity),
+        f"{scene.structure.kind} structure" if scene.structure else "": scene.structure is not None,
+        "glued interface": scene.interface is not None,
+    }
+    return [name for name, wanted in named.items() if wanted]
+
+
+def _on_lattice(scene: Scene) -> Scene:
+    if not isinstance(scene.grains, SettledGrains):
+        return scene
+    return scene.model_copy(update={"grains": scene.first_grains, "bed": None})
+
+
+def _settled_bed(scene: Scene) -> dict[str, Any] | None:
+    if scene.bed is None:
+        return None
+    folder = beds.bed_folder(scene, Path("runs"))
+    return beds.settled_state(folder) if (folder / SUMMARY).exists() else None
+
+
+def _grain_rows(built: Built) -> list[Row]:
+    system = built.model.particles
+    if system is None:
+        return []
+    n_free, n = system.grains.n_free, len(system.grains)
+    rows = [("grains", "free, prescribed", f"{n_free}, {n - n_free}")]
+    law = built.contact
+    rows.append(("grains", "normal stiffness, dashpot", f"{law.normal.stiffness:.4g} N/m, {law.normal.damping:.4g} N s/m"))
+    if n_free:
+        bound = source_bound(system.grains, law)
+        single = source_bound(system.grains, law, factor=2.0)
+        rows += [
+            ("time step", "chosen", f"{system.time_step:.4g} s"),
+            ("time step", f"source's bound (C = {SOURCE_FACTOR:g})", f"{bound:.4g} s"),
+            ("time step", "chosen over the bound", f"{built.stable_dt_ratio:.3f}"),
+            ("time step", "limit of a single contact", f"{single:.4g} s"),
+        ]
+    return rows
+
+
+def _structure_rows(scene: Scene, built: Built) -> list[Row]:
+    body = built.model.structure
+    if body is None:
+        return []
+    rows = [
+        ("structure", "kind, nodes, cells", f"{scene.structure.kind}, {len(body.mesh.points)}, {len(body.mesh.cells)}"),
+        ("structure", "step", f"{body.time_step:.4g} s"),
+    ]
+    if built.model.glued is not None:
+        glued = built.model.glued
+        rows += [
+            ("interface", "glued grains, diameter", f"{len(glued)}, {2 * glued.radius:.4g} m"),
+            ("interface", "stiffness ratio r (stable up to 2)", f"{built.stiffness_ratio:.3g}"),
+        ]
+    return rows
+
+
+def _cost_rows(scene: Scene, built: Built, factor: float) -> list[Row]:
+    model = built.model
+    model.advance(1)  # loads the compiled code
+    steps = TRIED if model.particles is not None and model.particles.grains.n_free > 1000 else 10 * TRIED
+    started = time.perf_counter()
+    model.advance(steps)
+    per_step = (time.perf_counter() - started) / steps
+    if model.particles is not None and model.particles.grains.n_free:
+        per_step *= factor
+    total = math.ceil(scene.time.duration / model.window)
+    rows = [
+        ("cost", "steps", f"{total}"),
+        ("cost", "time per step", f"{1e6 * per_step:.0f} us"),
+        ("cost", "estimated time", _spoken(per_step * total)),
+        ("cost", "memory of the state", f"{_state_bytes(model) / 1e6:.1f} MB"),
+    ]
+    if scene.bed is not None:
+        rows.append(("cost", "and, once, to settle its bed", _spoken(per_step * scene.bed.time.duration / scene.bed.time.step)))
+    return rows
+
+
+def _state_bytes(model: Any) -> int:
+    size = 0
+    if model.particles is not None:
+        size += sum(array.nbytes for array in model.particles.state().values())
+        size += int(BYTES_PER_CONTACT * LISTED_PAIRS * model.particles.grains.n_free)
+    if model.structure is not None:
+        size += sum(array.nbytes for array in model.structure.state().values())
+    return size
+
+
+def _spoken(seconds: float) -> str:
+    if seconds < 120.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} h"
