@@ -1,0 +1,119 @@
+"""A free plane-strain beam on discrete springs, with numpy and scipy alone: what the tests compare with."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix, csr_matrix, diags
+from scipy.sparse.linalg import splu
+
+
+@dataclass(frozen=True)
+class Rest:
+    """State at rest: displacement (2 n,) [m], push and shear (k,) [N/m] of each spring on the beam."""
+
+    displacement: np.ndarray
+    push: np.ndarray
+    shear: np.ndarray
+    slips: np.ndarray
+
+
+def quadrilateral_stiffness(young: float, poisson: float, width: float, height: float) -> np.ndarray:
+    """Stiffness (8, 8) of a bilinear rectangle in plane strain, 2 x 2 Gauss points (exact)."""
+    lam, mu = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / 2 / (1 + poisson)
+    elasticity = np.array([[lam + 2 * mu, lam, 0], [lam, lam + 2 * mu, 0], [0, 0, mu]])
+    sign_x, sign_y = np.array([-1, 1, 1, -1]), np.array([-1, -1, 1, 1])
+    stiffness = np.zeros((8, 8))
+    for x, y in np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) / np.sqrt(3):
+        strain = np.zeros((3, 8))
+        strain[0, ::2] = strain[2, 1::2] = sign_x * (1 + sign_y * y) / (2 * width)
+        strain[1, 1::2] = strain[2, ::2] = sign_y * (1 + sign_x * x) / (2 * height)
+        stiffness += strain.T @ elasticity @ strain * width * height / 4
+    return stiffness
+
+
+class IndependentBeam:
+    """Rectangle of ``along x across`` bilinear cells from (0, 0), lower face on springs.
+
+    Nodes are numbered row by row from below; unknowns are (x, y) of each node.
+    """
+
+    def __init__(
+        self, *, length: float, height: float, along: int, across: int, young: float, poisson: float
+    ) -> None:
+        self.length, self.along, self.across = length, along, across
+        column, row = (a.ravel() for a in np.meshgrid(np.arange(along), np.arange(across)))
+        first = row * (along + 1) + column
+        corners = np.stack([first, first + 1, first + along + 2, first + along + 1], axis=1)
+        unknowns = (2 * corners[:, :, None] + np.arange(2)).reshape(-1, 8)
+        cell = quadrilateral_stiffness(young, poisson, length / along, height / across)
+        places = (np.repeat(unknowns, 8, axis=1).ravel(), np.tile(unknowns, 8).ravel())
+        self.size = 2 * (along + 1) * (across + 1)
+        values = np.tile(cell.ravel(), len(unknowns))
+        self.stiffness = coo_matrix((values, places), shape=(self.size, self.size)).tocsr()
+
+    def uniform(self, total: float) -> np.ndarray:
+        """Nodal forces of a vertical force `total` [N/m] spread evenly over the upper face."""
+        share = np.ones(self.along + 1)
+        share[[0, -1]] = 0.5
+        return self.on_top(np.arange(self.along + 1), total * share / self.along)
+
+    def on_top(self, column: np.ndarray | int, force: np.ndarray | float) -> np.ndarray:
+        """Nodal forces of vertical forces [N/m] on nodes of the upper face, counted from the left."""
+        nodal = np.zeros(self.size)
+        nodal[2 * (self.across * (self.along + 1) + column) + 1] = force
+        return nodal
+
+    def middle(self, displacement: np.ndarray) -> np.ndarray:
+        """Vertical displacement (along + 1,) [m] of the middle row of nodes."""
+        return displacement[1::2].reshape(self.across + 1, -1)[self.across // 2]
+
+    def rest(
+        self,
+        load: np.ndarray,
+        springs: np.ndarray,
+        *,
+        normal: float,
+        tangential: float,
+        between: float,
+        friction: float = np.inf,
+        may_pull: bool = False,
+    ) -> Rest:
+        """Equilibrium on springs at abscissae `springs`; the active set is found by iteration.
+
+        Each spring is a pair of discs, one above the other, whose centres are `between` apart when
+        they just touch. Compressed by delta and displaced sideways by x, the line of centres turns
+        by ``phi = x/(between - delta)``, which tilts the normal force, and the tangential spring is
+        stretched by the integral of ``(between - delta) dphi``; for a load that grows in
+        proportion this is ``-x (between/delta) ln(1 - delta/between)``. Sideways each pair so has
+        the stiffness ``k_t (1 + delta/(2 between) + ...) - F_n/(between - delta)``. At Coulomb's
+        limit the tangential spring is replaced by its constant force.
+        """
+        across, along_x = self._at_springs(springs, 1), self._at_springs(springs, 0)
+        closed, slips = np.ones(len(springs), bool), np.zeros(len(springs), bool)
+        push, slide = np.zeros(len(springs)), np.zeros(len(springs))
+        for _ in range(100):
+            delta = push / normal
+            stretch = 1 + delta / (2 * between) + (delta / between) ** 2 / 3
+            sideways = closed * (~slips * tangential * stretch - push / (between - delta))
+            held = slips * closed * -friction * push * np.sign(slide)
+            system = self.stiffness + across.T @ diags(closed * normal) @ across
+            system = system + along_x.T @ diags(sideways) @ along_x
+            moved = splu(system.tocsc()).solve(load + along_x.T @ held)
+            down, slide = -(across @ moved), along_x @ moved
+            old = (push, closed, slips)
+            push = closed * normal * down
+            closed = np.full(len(springs), True) if may_pull else down > 0
+            slips = np.abs(tangential * stretch * slide) > friction * np.maximum(push, 0)
+            unchanged = (old[1] == closed).all() and (old[2] == slips).all()
+            if unchanged and np.abs(push - old[0]).max() <= 1e-12 * np.abs(push).max():
+                return Rest(moved, push, held - sideways * slide, slips & closed)
+        raise AssertionError("the set of closed springs does not settle")
+
+    def _at_springs(self, springs: np.ndarray, component: int) -> csr_matrix:
+        """Displacement component of the lower face at `springs` from all unknowns, linear in a facet."""
+        place = springs * self.along / self.length
+        node = np.minimum(np.floor(place + 1e-9).astype(int), self.along - 1)
+        share = place - node
+        row = np.arange(len(springs))
+        values, columns = np.append(1 - share, share), 2 * np.append(node, node + 1) + component
+        return csr_matrix((values, (np.append(row, row), columns)), shape=(len(springs), self.size))
