@@ -12,6 +12,8 @@ from structure.discrete import DiscreteBody
 from structure.errors import StructureError
 from structure.loads import BodyForce, BoundaryLoad, Load, PointLoad, ramp
 
+BULGE = 1.05  # a point of a round shape may lie that much farther away than one of its polygon
+
 
 class LoadVectors:
     """The external force on a body as a function of time.
@@ -76,7 +78,7 @@ def _on_node(body: DiscreteBody, load: PointLoad) -> NDArray[np.float64]:
     nearest = int(np.argmin(distance))
     lengths = polyline.lengths()
     reach = max(lengths[nearest], lengths[nearest - 1]) / 2
-    if distance[nearest] > reach * (1 + 1e-9):
+    if distance[nearest] > reach * BULGE:
         raise StructureError(
             f"point = {tuple(load.point)!r} lies {distance[nearest]:.3g} m from the nearest node of "
             f"the outer boundary, {tuple(polyline.points[nearest].tolist())!r}: at most half a "

@@ -1,0 +1,81 @@
+"""Two ranks give the serial answer."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+SCRIPT = """
+import sys
+import meshes, numpy as np
+from structure import *
+
+tube = meshes.tube(outer_radius=0.05, inner_radius=0.04)
+line = tube.outer_polyline
+comm = tube.domain.comm
+material = PlaneStrain(youngs_modulus=70e7, poissons_ratio=0.35, density=2700.0)
+loads = [BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -100.0), ramp_time=2e-3),
+         PointLoad(point=(0.0, -0.05), force=(0.0, 90.0)), BodyForce(acceleration=(1.0, -9.81))]
+damping = Rayleigh(mass_factor=0.5, stiffness_factor=1e-5)
+body = ElasticStructure(tube, material=material, time_step=4e-5, damping=damping, loads=loads)
+free = FreeRigid(tube, density=2700.0, time_step=4e-5, loads=loads)
+rng = np.random.default_rng(11)
+out = {}
+for step in range(150):
+    force = rng.normal(size=line.points.shape)
+    if comm.rank:
+        force = np.full_like(force, np.nan)     # the force of rank 0 counts
+    body.advance(force)
+    free.advance(force)
+    if step == 99:
+        state = body.state()
+        if comm.rank:
+            state = None                        # the state of rank 0 counts
+        other = ElasticStructure(
+            tube, material=material, time_step=4e-5, damping=damping, loads=loads)
+        other.restore(state)
+        body, before = other, body
+        np.testing.assert_array_equal(body.boundary_acceleration, before.boundary_acceleration)
+    if step == 120:
+        out["predicted"] = body.predict(1e-3)
+for name, one in (("body", body), ("free", free)):
+    out |= {name + "_" + key: getattr(one, "boundary_" + key)
+            for key in ("displacement", "velocity", "acceleration", "mass")}
+    out |= {name + "_" + key: np.array(value) for key, value in vars(one.energies()).items()}
+    for key in ("centroid", "mean_rotation", "momentum", "external_force"):
+        out[name + "_" + key] = np.array(getattr(one, key)())
+out |= vars(body.peaks())
+out |= {"field_" + key: value for key, value in body.fields().point_data.items()}
+out["static"] = ElasticStructure(tube, material=material, time_step=1.0, loads=[
+    BoundaryLoad(boundary="outer", total_force=(1.0, 2.0)),
+    BoundaryLoad(boundary="inner", total_force=(-1.0, -2.0))]).static_displacement()
+beam = meshes.beam(length=1.0, height=0.05, order=2, cell="triangle")
+swing = ElasticStructure(beam, material=material, time_step=1e-4)
+out["frequencies"] = swing.frequencies(3)
+swing.release_from_mode(1, 1e-3)
+for _ in range(50):
+    swing.advance(np.zeros_like(beam.outer_polyline.points))
+out["swing"] = swing.boundary_displacement
+np.savez(f"{sys.argv[1]}_{comm.rank}.npz", **out)
+"""
+
+
+def test_two_ranks_give_the_serial_answer(tmp_path: Path) -> None:
+    # An MPI process marks its environment; a new mpirun must not take it for its own.
+    marks = ("OMPI_", "PMIX_", "PRTE_", "ORTE_")
+    clean = {key: value for key, value in os.environ.items() if not key.startswith(marks)}
+    run = [sys.executable, "-c", SCRIPT]
+    mpirun = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2"]
+    subprocess.run([*run, str(tmp_path / "serial")], check=True, env=clean, timeout=180)
+    subprocess.run([*mpirun, *run, str(tmp_path / "parallel")], check=True, env=clean, timeout=180)
+    serial = np.load(tmp_path / "serial_0.npz")
+    ranks = [np.load(tmp_path / f"parallel_{rank}.npz") for rank in range(2)]
+    assert len(serial.files) > 30
+    for name in serial.files:
+        scale = np.abs(serial[name]).max()
+        for parallel in ranks:
+            np.testing.assert_allclose(
+                parallel[name], serial[name], rtol=0, atol=1e-9 * scale + 1e-15, err_msg=name
+            )

@@ -1,0 +1,206 @@
+"""Newmark: order of the period, energy and momentum balances, damping, stability, state."""
+
+import meshes
+import numpy as np
+import pytest
+from structure import (
+    BodyForce,
+    BoundaryLoad,
+    ElasticStructure,
+    Newmark,
+    PlaneStrain,
+    PointLoad,
+    Rayleigh,
+    StructureEnergies,
+    StructureError,
+)
+
+
+def balance(e: StructureEnergies) -> float:
+    return e.kinetic + e.strain + e.rayleigh_loss - e.external_work - e.boundary_work
+
+
+def test_period_error_is_of_order_two(aluminium: PlaneStrain) -> None:
+    beam = meshes.beam(length=1.0, height=0.05, along=20)
+    omega = 2 * np.pi * ElasticStructure(beam, material=aluminium, time_step=1.0).frequencies(1)[0]
+    errors = []
+    steps = np.array([20, 40, 80])
+    for per_period in steps:
+        dt = 2 * np.pi / omega / per_period
+        body = ElasticStructure(beam, material=aluminium, time_step=dt)
+        body.release_from_mode(1, 1e-3)
+        swing = []
+        for _ in range(3 * per_period):
+            swing.append(body.boundary_displacement[0, 1])
+            body.advance(np.zeros_like(body.polyline.points))
+        turns = np.array(swing)
+        # Of a discrete oscillation x_n: (x_{n+1} + x_{n-1})/2 = cos(w dt) x_n; least squares.
+        inner = turns[1:-1]
+        cosine = inner @ (turns[2:] + turns[:-2]) / 2 / (inner @ inner)
+        errors.append(1 - np.arccos(cosine) / dt / omega)
+    rates = np.log2(np.array(errors[:-1]) / errors[1:])
+    np.testing.assert_allclose(rates, 2.0, atol=0.1)
+    # Average acceleration lengthens the period by (w dt)^2/12, to the next order.
+    np.testing.assert_allclose(errors, (2 * np.pi / steps) ** 2 / 12, rtol=0.05)
+
+
+@pytest.mark.parametrize(("cell", "order"), [("quadrilateral", 1), ("triangle", 2)])
+def test_energy_balance_closes_to_round_off(cell: str, order: int, soft: PlaneStrain) -> None:
+    tube = meshes.tube(outer_radius=0.05, inner_radius=0.04, cell=cell, order=order)
+    loads = [
+        BoundaryLoad(boundary="loaded_arc", total_force=(3.0, -10.0), ramp_time=0.02),
+        BoundaryLoad(boundary="inner", total_force=(-2.0, 1.0)),
+        BodyForce(acceleration=(0.0, -9.81), ramp_time=0.03),
+        PointLoad(point=(0.0, -0.05), force=(0.0, 15.0), ramp_time=0.01),
+    ]
+    body = ElasticStructure(
+        tube,
+        material=soft,
+        time_step=1e-4,
+        damping=Rayleigh(mass_factor=5.0, stiffness_factor=2e-4),
+        loads=loads,
+    )
+    rng = np.random.default_rng(7)
+    start = 1e-5 * rng.normal(size=tube.points.shape)
+    body.set_initial(displacement=start, velocity=100 * start)
+    before = balance(body.energies())
+    for _ in range(500):
+        body.advance(rng.normal(size=body.polyline.points.shape))
+    after = body.energies()
+    exchanged = sum(abs(v) for v in vars(after).values())
+    assert after.rayleigh_loss > 1e-3 * exchanged
+    assert abs(after.external_work) > 1e-3 * exchanged
+    # 500 steps of sums over some hundred terms.
+    assert abs(balance(after) - before) < 1e4 * np.finfo(float).eps * exchanged
+
+
+def test_impulse_is_the_change_of_momentum(soft: PlaneStrain) -> None:
+    tube = meshes.tube(outer_radius=0.05, inner_radius=0.04)
+    dt, gravity = 1e-4, np.array([1.0, -9.81])
+    body = ElasticStructure(
+        tube, material=soft, time_step=dt, loads=[BodyForce(acceleration=tuple(gravity))]
+    )
+    rng = np.random.default_rng(3)
+    last = np.zeros_like(body.polyline.points)
+    impulse = np.zeros(2)
+    for _ in range(200):
+        force = rng.normal(size=last.shape)
+        body.advance(force)
+        impulse += dt * (body.mass * gravity + (last + force).sum(axis=0) / 2)
+        last = force
+    # Round-off of K u, with E u = 7e6 N/m^2 times 1e-3 m, over 200 steps.
+    np.testing.assert_allclose(body.momentum(), impulse, rtol=1e-11, atol=1e-11)
+
+
+def test_rayleigh_damps_a_mode_by_its_ratio(soft: PlaneStrain) -> None:
+    beam = meshes.beam(length=1.0, height=0.1, along=20)
+    omega = 2 * np.pi * ElasticStructure(beam, material=soft, time_step=1.0).frequencies(1)[0]
+    damping = Rayleigh(mass_factor=0.02 * omega, stiffness_factor=0.04 / omega)
+    dt = 2 * np.pi / omega / 400
+    body = ElasticStructure(beam, material=soft, time_step=dt, damping=damping)
+    body.release_from_mode(1, 1e-3)
+    start = body.energies().strain
+    for _ in range(1200):
+        body.advance(np.zeros_like(body.polyline.points))
+    e = body.energies()
+    # Ratio (0.02 + 0.04)/2 = 0.03: after three damped periods the swing is again at its top.
+    ratio, periods = 0.03, 3
+    expected = start * np.exp(-2 * ratio * 2 * np.pi * periods)
+    # The energy sampled within a period wavers by the damping ratio.
+    assert e.kinetic + e.strain == pytest.approx(expected, rel=0.02)
+    assert e.rayleigh_loss == pytest.approx(start - expected, rel=0.02)
+    assert damping.overdamped_above == pytest.approx(2 * omega / 0.04)
+
+
+def test_linear_acceleration_is_stable_up_to_its_bound_only(soft: PlaneStrain) -> None:
+    with pytest.raises(StructureError, match="allow_conditional"):
+        Newmark(beta=1 / 6, gamma=0.5)
+    beam = meshes.beam(length=1.0, height=0.5, along=2, across=1)
+    highest = 2 * np.pi * ElasticStructure(beam, material=soft, time_step=1.0).frequencies(9)[-1]
+    scheme = Newmark(beta=1 / 6, gamma=0.5, allow_conditional=True)
+    growth = []
+    for product in (3.44, 3.49):  # the bound is sqrt(12) = 3.464
+        body = ElasticStructure(beam, material=soft, time_step=product / highest, scheme=scheme)
+        body.set_initial(velocity=np.random.default_rng(1).normal(size=beam.points.shape))
+        for _ in range(400):
+            body.advance(np.zeros_like(body.polyline.points))
+        growth.append(np.abs(body.boundary_displacement - body.boundary_displacement[0]).max())
+    assert growth[0] < 10
+    assert growth[1] > 1e6 * growth[0]
+
+
+def test_free_fall_of_the_loaded_body_is_exact(soft: PlaneStrain) -> None:
+    tube = meshes.tube(outer_radius=0.05, inner_radius=0.04)
+    fall = BodyForce(acceleration=(0.0, -9.81))
+    body = ElasticStructure(tube, material=soft, time_step=1e-3, loads=[fall])
+    np.testing.assert_allclose(body.external_force(), [0, -9.81 * body.mass], rtol=1e-12)
+    expected = -9.81 * 0.1**2 / 2
+    before = body.predict(0.1)
+    for _ in range(100):
+        body.advance(np.zeros_like(body.polyline.points))
+    assert body.time == pytest.approx(0.1)
+    # Constant acceleration is followed exactly; what is left is the round-off of the solves.
+    np.testing.assert_allclose(body.centroid()[1], expected, rtol=1e-10)
+    np.testing.assert_allclose(body.boundary_displacement[:, 1], expected, rtol=1e-8)
+    np.testing.assert_allclose(before[:, 1], expected, rtol=1e-8)
+    np.testing.assert_array_equal(
+        body.predict(0.5, order=1), body.boundary_displacement + 0.5 * body.boundary_velocity
+    )
+
+
+def test_restored_structure_goes_on_with_the_same_bits(soft: PlaneStrain) -> None:
+    tube = meshes.tube(outer_radius=0.05, inner_radius=0.04)
+
+    def build() -> ElasticStructure:
+        load = BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -10.0), ramp_time=0.01)
+        damping = Rayleigh(mass_factor=0.1, stiffness_factor=1e-4)
+        return ElasticStructure(
+            tube, material=soft, time_step=1e-4, damping=damping, loads=[load]
+        )
+
+    rng = np.random.default_rng(5)
+    forces = rng.normal(size=(160, *tube.outer_polyline.points.shape))
+    straight, stopped = build(), build()
+    for force in forces[:80]:
+        straight.advance(force)
+        stopped.advance(force)
+    state = {name: array.copy() for name, array in stopped.state().items()}
+    resumed = build()
+    resumed.restore(state)
+    for force in forces[80:]:
+        straight.advance(force)
+        resumed.advance(force)
+    assert resumed.time == straight.time
+    assert resumed.energies() == straight.energies()
+    for name, array in straight.state().items():
+        np.testing.assert_array_equal(resumed.state()[name], array, err_msg=name)
+    np.testing.assert_array_equal(resumed.boundary_velocity, straight.boundary_velocity)
+
+
+def test_release_from_mode_swings_in_that_mode_alone(aluminium: PlaneStrain) -> None:
+    beam = meshes.beam(length=1.0, height=0.05, along=20)
+    body = ElasticStructure(beam, material=aluminium, time_step=1e-5)
+    frequencies = body.frequencies(3)
+    assert (np.diff(frequencies) > 0).all() and frequencies[0] > 100
+    body.release_from_mode(2, -2e-3)
+    shape = body.fields().point_data["displacement"]
+    assert np.hypot(*shape.T).max() == pytest.approx(2e-3)
+    np.testing.assert_allclose(body.momentum(), 0, atol=1e-15)
+    np.testing.assert_allclose(body.centroid(), [0.5, 0.025], atol=1e-12)
+    # In equilibrium with M a = -omega^2 M u.
+    square = (2 * np.pi * frequencies[1]) ** 2
+    np.testing.assert_allclose(
+        body.boundary_acceleration, -square * body.boundary_displacement, atol=1e-8 * square * 2e-3
+    )
+
+
+def test_ledger_can_be_left_out(soft: PlaneStrain) -> None:
+    beam = meshes.beam(length=1.0, height=0.1, along=4)
+    silent = ElasticStructure(beam, material=soft, time_step=1e-4, ledger=False)
+    full = ElasticStructure(beam, material=soft, time_step=1e-4)
+    push = np.ones_like(beam.outer_polyline.points)
+    for body in (silent, full):
+        body.advance(push)
+    np.testing.assert_array_equal(silent.boundary_displacement, full.boundary_displacement)
+    with pytest.raises(StructureError, match="ledger"):
+        silent.energies()
