@@ -47,7 +47,7 @@ def elastic_plastic_rolling(law, k_r, compliance, m_old, omega_r, limit, dt):
         m = math.copysign(limit, m)
         return m, m, trial - m
     m_t = m
-    if law.eta_r > 0.0:
+    if law.eta_r > 0.0 and compliance > 0.0:  # two prescribed grains have no inertia to damp
         m_t -= 2.0 * law.eta_r * math.sqrt(k_r / compliance) * omega_r
         if abs(m_t) > limit:
             m_t = math.copysign(limit, m_t)
