@@ -13,15 +13,19 @@ export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
-.PHONY: install demo test bench bench-peers validate clean
+.PHONY: install install-test demo test bench bench-peers validate clean
 
 install:
 	@.ci/install
 
-demo: install
-	@.venv/bin/leito run scenes/elastic_tube.toml $(ARGS)
+install-test:
+	@.ci/install test
 
-test: install
+# A second call goes on where the first one stopped, or shows what it came to.
+demo: install
+	@.venv/bin/leito run scenes/elastic_tube.toml $(or $(ARGS),$(if $(wildcard runs/elastic_tube/scene.toml),--resume))
+
+test: install-test
 	@$(PYTHON) -m pytest $(ARGS)
 
 bench: install
@@ -30,7 +34,7 @@ bench: install
 bench-peers: install
 	@$(PYTHON) benchmarks/peers.py $(ARGS)
 
-validate: install
+validate: install-test
 	@$(PYTHON) -m pytest -m validate $(ARGS)
 
 clean:
