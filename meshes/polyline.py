@@ -84,11 +84,10 @@ def trace(
         node, name = following[node]
         names.append(name)
     assert node == first and len(set(ordered)) == len(following), "the outer edges are not one loop"
-    count = len(ordered)
-    index = np.arange(count)
+    index = np.arange(len(ordered))
     polyline = BoundaryPolyline(
         points=nodes[ordered].copy(),
-        facets=np.column_stack([index, (index + 1) % count]),
+        facets=np.column_stack([index, np.roll(index, -1)]),
         facet_names=tuple(names),
     )
     return polyline, np.array(ordered, dtype=np.int64)

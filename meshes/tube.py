@@ -33,9 +33,10 @@ def tube(
     """Ring between two radii [m], ``around`` x ``layers`` cells, a node at its lowest point.
 
     Boundaries: "outer", "inner" and "loaded_arc", the facets of "outer" that cover
-    `loaded_arc_degrees` symmetrically about the top; "free_arc" is the rest of "outer". The arc is made of whole facets: as many as
-    come nearest to the angle wanted (30 around and 120 degrees: exactly 10). The polyline begins
-    at the lowest point. G 4.2 uses 30 x 2 quadrilaterals of order 1.
+    `loaded_arc_degrees` symmetrically about the top; "free_arc" is the rest of "outer". The arc
+    is made of whole facets: as many as come nearest to the angle wanted (30 around and 120
+    degrees: exactly 10). The polyline begins at the lowest point. G 4.2 uses 30 x 2
+    quadrilaterals of order 1.
 
     Raises
     ------
@@ -109,6 +110,11 @@ def _snap(
     return snap
 
 
+def _point(centre: tuple[float, float], radius: float, angle: float) -> int:
+    x, y = centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)
+    return gmsh.model.geo.addPoint(x, y, 0.0)
+
+
 def _draw(
     radii: tuple[float, float],
     divisions: tuple[int, int],
@@ -123,10 +129,7 @@ def _draw(
     first = (around - loaded) // 2
     middle = geo.addPoint(centre[0], centre[1], 0.0)
     angles = [2 * math.pi * b / around - math.pi / 2 for b in breaks[:-1]]
-    inner, outer = (
-        [geo.addPoint(centre[0] + r * math.cos(a), centre[1] + r * math.sin(a), 0.0) for a in angles]
-        for r in radii
-    )
+    inner, outer = ([_point(centre, radius, angle) for angle in angles] for radius in radii)
     spokes = [geo.addLine(i, o) for i, o in zip(inner, outer)]
     for spoke in spokes:
         geo.mesh.setTransfiniteCurve(spoke, layers + 1)

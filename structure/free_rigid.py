@@ -30,7 +30,8 @@ class FreeRigid:
     step and ``T_m`` the moment of the mean forces in the middle of it,
     ``I (w1 - w) = dt sin(da/2)/(da/2) T_m``, ``da = dt (w + w1)/2``. The chord in place of the
     arc makes the trapezoidal work of the nodal forces equal to the change of kinetic energy
-    exactly. Order 2. The interface is that of `ElasticStructure`.
+    exactly. Order 2. The interface is that of `ElasticStructure`; `boundary_mass` shares the mass
+    evenly among the boundary nodes.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class LoadVectors:
 def _vector(body: DiscreteBody, load: Load) -> NDArray[np.float64]:
     match load:
         case BodyForce():
-            return body.weigh(np.tile(np.asarray(load.acceleration, dtype=float), body.unknowns // 2))
+            return body.weigh(np.tile(np.array(load.acceleration, float), body.unknowns // 2))
         case BoundaryLoad():
             return _on_boundary(body, load)
         case PointLoad():
@@ -80,8 +80,8 @@ def _on_node(body: DiscreteBody, load: PointLoad) -> NDArray[np.float64]:
     reach = max(lengths[nearest], lengths[nearest - 1]) / 2
     if distance[nearest] > reach * BULGE:
         raise StructureError(
-            f"point = {tuple(load.point)!r} lies {distance[nearest]:.3g} m from the nearest node of "
-            f"the outer boundary, {tuple(polyline.points[nearest].tolist())!r}: at most half a "
+            f"point = {tuple(load.point)!r} lies {distance[nearest]:.3g} m from the nearest node "
+            f"of the outer boundary, {tuple(polyline.points[nearest].tolist())!r}: at most half a "
             f"facet, {reach:.3g} m, is allowed"
         )
     vector = np.zeros((body.unknowns // 2, 2))

@@ -93,5 +93,5 @@ class Rayleigh:
 
     @property
     def overdamped_above(self) -> float:
-        """Angular frequency [rad/s] above which modes no longer swing: ``2/c_b`` (c_a neglected)."""
+        """Angular frequency [rad/s] above which no mode swings: ``2/c_b`` (c_a neglected)."""
         return 2 / self.stiffness_factor if self.stiffness_factor > 0 else math.inf

@@ -16,7 +16,7 @@ RIGID_MODES = 3
 
 
 def stiffness_scale(body: DiscreteBody, material: PlaneStrain) -> float:
-    """A square of an angular frequency [1/s^2] of the order of, or below, the lowest elastic one."""
+    """Square of an angular frequency [1/s^2], about the lowest elastic one or below."""
     size = np.ptp(body.mesh.points, axis=0).max()
     return 1e-2 * material.youngs_modulus / material.density / size**2
 
@@ -48,7 +48,8 @@ def elastic_modes(
     unknowns = stiffness.getSize()[0]
     if not 1 <= count <= unknowns - RIGID_MODES:
         raise StructureError(
-            f"mode {count} does not exist: this mesh has elastic modes 1 to {unknowns - RIGID_MODES}"
+            f"mode {count} does not exist: this mesh has elastic modes 1 to "
+            f"{unknowns - RIGID_MODES}"
         )
     solver = _solver(body, stiffness, material, count)
     solver.solve()

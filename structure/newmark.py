@@ -64,7 +64,10 @@ class NewmarkStepper:
         self._dt, self._beta, self._gamma = dt, scheme.beta, scheme.gamma
         names = ("displacement", "velocity", "acceleration", "force", "increment", "product")
         arrays = {name: np.zeros(mass.getLocalSize()[0]) for name in names}
-        vectors = {name: PETSc.Vec().createWithArray(arrays[name], comm=mass.comm) for name in names}
+        vectors = {
+            name: PETSc.Vec().createWithArray(array, comm=mass.comm)
+            for name, array in arrays.items()
+        }
         self.displacement, self._u = arrays["displacement"], vectors["displacement"]
         self.velocity, self._v = arrays["velocity"], vectors["velocity"]
         self.acceleration, self._a = arrays["acceleration"], vectors["acceleration"]

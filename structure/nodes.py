@@ -36,7 +36,7 @@ class NodeMap:
         self._everyone = np.concatenate(self._comm.allgather(self.owned))
 
     def gather(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Owned values (flat, two per node) of all ranks -> (n, 2) in original order, everywhere."""
+        """Owned values (flat, two per node) -> (n, 2) in original order, on every rank."""
         result = np.empty((self._count, 2))
         shares = self._comm.allgather(values.reshape(-1, 2))
         result[self._everyone] = np.concatenate(shares)

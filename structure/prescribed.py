@@ -17,6 +17,7 @@ from structure.rigid_motion import NO_STRESS, RigidMotion, rigid_fields
 class PrescribedRigid:
     """Rigid body whose displacement is piecewise linear in time; it never turns.
 
+    Attributes are those of `ElasticStructure`; `boundary_mass` is infinite, as nothing moves it.
     At a way point the velocity is that of the piece ahead; after the last one the body rests.
     The interface is that of `ElasticStructure`.
 
@@ -152,7 +153,8 @@ def _checked_path(path: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.floa
     rows = np.asarray(path, dtype=float)
     if rows.ndim != 2 or rows.shape[1] != 3 or not np.all(np.isfinite(rows)):
         raise StructureError(
-            f"path of shape {rows.shape} must have finite rows (time in s, x and y displacement in m)"
+            f"path of shape {rows.shape} must have finite rows "
+            "(time in s, x and y displacement in m)"
         )
     if np.any(rows[0] != 0.0):
         raise StructureError(

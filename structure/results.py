@@ -36,14 +36,15 @@ class StructureEnergies:
 
 @dataclass(frozen=True, kw_only=True)
 class StructurePeaks:
-    """Largest values over all Gauss points: von Mises stress [Pa], magnitude of principal strain."""
+    """Largest over all Gauss points: von Mises stress [Pa], magnitude of principal strain."""
 
     von_mises: float
     strain: float
 
 
 STRESS_AND_STRAIN = (
-    "sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz", "von_mises", "strain_xx", "strain_yy", "strain_xy",
+    "sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz", "von_mises",
+    "strain_xx", "strain_yy", "strain_xy",
 )  # fmt: skip
 
 

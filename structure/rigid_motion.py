@@ -16,7 +16,7 @@ NO_STRESS = StructurePeaks(von_mises=0.0, strain=0.0)
 
 @dataclass(frozen=True, kw_only=True)
 class RigidMotion:
-    """Motion of the centroid and turn about it; a point at reference arm R is at ``x + Q(angle) R``.
+    """Motion of the centroid and turn about it: reference arm R goes to ``x + Q(angle) R``.
 
     shift (2,) [m], angle [rad], velocity (2,) [m/s], spin [rad/s], acceleration (2,) [m/s^2],
     angular_acceleration [rad/s^2]; counter-clockwise positive.

@@ -32,15 +32,7 @@ def balanced_displacement(
     """
     force = loads.at(loads.constant_from)
     rigid = rigid_motions(body)
-    work = np.abs(body.comm.allreduce(rigid @ force))
-    scale = np.sqrt(body.total(float(force @ force)) / body.mass)
-    if scale == 0.0:
-        return np.zeros_like(body.mesh.points)
-    if work.max() > LARGEST_IMBALANCE * scale:
-        raise StructureError(
-            f"loads with the resultant {loads.resultant(loads.constant_from).tolist()} N/m do not "
-            "balance in force and moment: a free body has no position of rest under them"
-        )
+    _check_balance(body, loads, force, rigid)
     shift = 1e-2 * stiffness_scale(body, material)
     shifted = stiffness.copy()
     shifted.axpy(shift, body.mass_matrix, structure=PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
@@ -52,10 +44,23 @@ def balanced_displacement(
         stiffness.mult(solution, residual)
         residual.aypx(-1.0, right)
         solve(residual, step)
-        free = step.array - rigid.T @ body.comm.allreduce(
-            rigid @ body.weigh(step.array)
-        )
+        free = step.array - rigid.T @ body.comm.allreduce(rigid @ body.weigh(step.array))
         solution.array[:] += free
         if body.total(float(free @ free)) <= 1e-26 * solution.dot(solution):
             break
     return body.nodes.gather(solution.array)
+
+
+def _check_balance(
+    body: DiscreteBody,
+    loads: LoadVectors,
+    force: NDArray[np.float64],
+    rigid: NDArray[np.float64],
+) -> None:
+    work = np.abs(body.comm.allreduce(rigid @ force))
+    scale = np.sqrt(body.total(float(force @ force)) / body.mass)
+    if work.max() > LARGEST_IMBALANCE * scale:
+        raise StructureError(
+            f"loads with the resultant {loads.resultant(loads.constant_from).tolist()} N/m do not "
+            "balance in force and moment: a free body has no position of rest under them"
+        )

@@ -60,7 +60,8 @@ def test_slender_beam_has_euler_and_bernoullis_frequency() -> None:
 
 def test_stout_beam_has_timoshenkos_frequencies() -> None:
     found = frequencies(0.05, 60, 3, order=2, count=2)
-    guess = euler_bernoulli(0.05) * np.array([0.98, 2.63])  # the second: (7.8532/4.7300)^2, less 5 %
+    # The second: (7.8532/4.7300)^2 of the first, less 5 %.
+    guess = euler_bernoulli(0.05) * np.array([0.98, 2.63])
     for value, near in zip(found, guess):
         # Beam theory itself is good to a few 1e-4 at wave lengths of ten heights.
         assert value == pytest.approx(timoshenko(0.05, near), rel=1e-3)

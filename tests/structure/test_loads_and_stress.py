@@ -41,7 +41,7 @@ def test_boundary_load_acts_in_the_middle_of_its_arc(cell: str, order: int) -> N
 
 
 def crushed_tube(cell: str, refinement: int, material: PlaneStrain) -> ElasticStructure:
-    """Tube pushed down on its loaded arc by 1000 N/m and lifted as much by a body force, at rest."""
+    """Tube pushed down on its arc by 1000 N/m and lifted as much by a body force, at rest."""
     tube = meshes.tube(
         outer_radius=0.05,
         inner_radius=0.04,
