@@ -47,9 +47,11 @@ class Model:
 
     One coupled step of length ``H = substeps dt``:
 
-    - predicted (default): the glued grains move to the predicted boundary (``u + H v + H^2 a/2``;
-      ``u + H v`` with sub-cycling) while the grains take their `substeps`; the mean contact force of
-      the window goes to the nodes at the new time; the structure steps.
+    - predicted (default): the glued grains move to the predicted boundary ``u + H v + H^2 a/2``
+      while the grains take their `substeps`; the contact force goes to the nodes at the new time;
+      the structure steps. With sub-cycling the force is the mean of the window, which belongs to
+      its middle; the last two means are extrapolated to its end, ``f + (f - f_old)/2``. Given to
+      the nodes as it is, the mean lags by H/2 and feeds energy into the interface at any step.
     - lagged (the source's order): the structure steps with the forces of the last window; the glued
       grains move to where it went while the grains take their substeps.
 
@@ -115,11 +117,11 @@ class Model:
         self.steps_done += steps
 
     def _predicted_step(self) -> None:
-        order = 2 if self.substeps == 1 else 1
-        started = time.perf_counter()
-        self._move_grains(self.structure.predict(self.window, order))
+        started, before = time.perf_counter(), self.nodal_force
+        self._move_grains(self.structure.predict(self.window))
         moved = time.perf_counter()
-        self.structure.advance(self.nodal_force)
+        mean = self.substeps > 1
+        self.structure.advance(1.5 * self.nodal_force - 0.5 * before if mean else self.nodal_force)
         self.seconds["structure"] += time.perf_counter() - moved
         self.seconds["exchange"] += moved - started
 
