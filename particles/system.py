@@ -136,6 +136,8 @@ class ParticleSystem:
         self.impulse[:] = 0.0
         threaded = self.threads > 1 and len(self.blocks) > 2
         step = stepping.advance_threaded if threaded else stepping.advance
+        if threaded:
+            numba.set_num_threads(self.threads)  # global: another system may have set its own
         laws, damping, drifted = self._laws(), self._damping(), False
         left = int(steps)
         while True:

@@ -43,7 +43,14 @@ def test_two_threads_give_the_bits_of_one(reference: dict[str, np.ndarray]) -> N
     assert system.threads == 2
     system.advance(STEPS)
     assert same(system.state(), reference)
-    numba.set_num_threads(1)
+
+
+@pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="this machine lends one thread")
+def test_a_system_keeps_its_threads_when_another_is_made() -> None:
+    system = crowd(threads=2)
+    crowd(threads=1)
+    system.advance(1)
+    assert numba.get_num_threads() == 2
 
 
 def test_steps_one_by_one_give_the_bits_of_many(reference: dict[str, np.ndarray]) -> None:
