@@ -115,10 +115,10 @@ def near_structure(run: _Files) -> Figure | None:
     low, high = places.min(axis=0), places.max(axis=0)
     size = 0.75 * float((high - low).max())
     centre = (low + high) / 2
-    figure.axes[0].set(
-        xlim=(centre[0] - size, centre[0] + size), ylim=(centre[1] - 1.2 * size, centre[1] + 0.8 * size)
-    )
-    figure.set_size_inches(WIDTH, WIDTH)
+    all_low, all_high = figure.axes[0].get_ylim()
+    bottom, top = max(centre[1] - 1.2 * size, all_low), min(centre[1] + 0.8 * size, all_high)
+    figure.axes[0].set(xlim=(centre[0] - size, centre[0] + size), ylim=(bottom, top))
+    figure.set_size_inches(WIDTH, 0.85 * WIDTH * (top - bottom) / (2.0 * size) + 1.6)
     return figure
 
 
@@ -169,7 +169,7 @@ def reaction(run: _Files) -> Figure | None:
     axes.plot(run.time, run.history["reaction_y"], label="reaction of the grains, vertical", linewidth=0.9)
     if np.ptp(run.history["reaction_x"]) > 0.01 * np.ptp(run.history["reaction_y"]):
         axes.plot(run.time, run.history["reaction_x"], label="horizontal", linewidth=0.9)
-    if run.history["applied_y"].any():
+    if run.scene["structure"]["kind"] != "rigid":
         axes.plot(run.time, -run.history["applied_y"], "k--", label="applied load, opposite", linewidth=0.9)
     axes.set(xlabel="time [s]", ylabel="force [N/m]")
     axes.legend()

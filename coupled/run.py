@@ -32,7 +32,7 @@ from coupled.watchdog import watch
 from particles.beds import rest_ratio
 
 Result = TypeVar("Result")
-PEAKS = ("max_von_mises", "max_strain", "momentum_residual")
+PEAKS = ("max_von_mises", "max_strain", "momentum_residual", "reaction_y")
 LONGEST_CHUNK = 2000  # steps between two looks at Ctrl-C
 
 
@@ -159,7 +159,7 @@ class Run:
         if any(event is not None and event.due(step) for event in events):
             seen = observe(self.model, self.start)
             for name in PEAKS:
-                self.peaks[name] = max(self.peaks[name], seen.numbers.get(name, 0.0))
+                self.peaks[name] = max(self.peaks[name], abs(seen.numbers.get(name, 0.0)))
             self._on_root_alone(lambda: watch(self.model, seen))
             self._end_at_rest(seen)
             self._write_due(seen)

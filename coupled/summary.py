@@ -21,7 +21,7 @@ def summarise(
     first : dict
         Numbers of the first observation.
     peaks : dict
-        Largest values over all observations.
+        Largest magnitudes over all observations.
     seconds : dict
         Wall time per part [s].
     """
@@ -47,8 +47,10 @@ def summarise(
     }
     if model.structure is not None:
         summary |= {
+            "kind": built.scene.structure.kind,
             "applied_y": numbers["applied_y"],
             "reaction_y": numbers.get("reaction_y", 0.0),
+            "reaction_y_max": peaks["reaction_y"],
             "centroid_y": numbers["centroid_y"],
             "centroid_drop": first["centroid_y"] - numbers["centroid_y"],
             "rotation": numbers["rotation"],
@@ -64,8 +66,8 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
     lines = [f"{summary['title']}: {summary['simulated_seconds']:g} s simulated in {wall:.1f} s"]
     if "applied_y" in summary:
         lines += [
-            f"  reaction of the grains   {summary['reaction_y']:12.2f} N/m   against an applied load of "
-            f"{summary['applied_y']:.2f} N/m",
+            f"  reaction of the grains   {summary['reaction_y']:12.2f} N/m   against {summary['applied_y']:.2f} N/m of "
+            f"{'drive' if summary['kind'] == 'rigid' else 'applied load'}; largest {summary['reaction_y_max']:.2f} N/m",
             f"  centroid drop            {1e3 * summary['centroid_drop']:12.3f} mm    rotation "
             f"{summary['rotation']:.4f} rad",
             f"  largest von Mises        {summary['max_von_mises'] / 1e6:12.4f} MPa   largest strain "

@@ -41,12 +41,15 @@ class Frames:
 
     def __init__(self, folder: Path, name: str, *, keep_until: float | None = None) -> None:
         self.folder, self.name = folder, name
-        self._frames: list[tuple[float, Path]] = []
+        self._count = 0
+        self._index = ET.Element("Xdmf", Version="3.0")
+        domain = ET.SubElement(self._index, "Domain")
+        self._series = ET.SubElement(domain, "Grid", Name=name, GridType="Collection", CollectionType="Temporal")
         (folder / "frames").mkdir(parents=True, exist_ok=True)
         for path in sorted((folder / "frames").glob(f"{name}.*.h5")):
             time = _time_of(path)
             if keep_until is not None and time is not None and time <= keep_until:
-                self._frames.append((time, path))
+                self._enter(time, path)
             else:
                 path.unlink()
 
@@ -60,7 +63,7 @@ class Frames:
         kind: str = "point",
     ) -> None:
         """Add a frame: points (n, 2) [m], cells (m, k), data (n,) or (n, 2) per point, in single precision."""
-        path = self.folder / "frames" / f"{self.name}.{len(self._frames):06d}.h5"
+        path = self.folder / "frames" / f"{self.name}.{self._count:06d}.h5"
         beside = path.with_suffix(".part")
         with h5py.File(beside, "w") as file:
             file.attrs["time"], file.attrs["kind"] = time, kind
@@ -70,23 +73,16 @@ class Frames:
             for label, values in data.items():
                 file[f"data/{label}"] = _in_space(values)
         os.replace(beside, path)
-        self._frames.append((time, path))
-        self._write_index()
-
-    def _write_index(self) -> None:
-        root = ET.Element("Xdmf", Version="3.0")
-        series = ET.SubElement(
-            ET.SubElement(root, "Domain"), "Grid", Name=self.name, GridType="Collection", CollectionType="Temporal"
-        )
-        for time, path in self._frames:
-            self._write_grid(series, time, path)
+        self._enter(time, path)
         index = self.folder / f"{self.name}.xdmf"
         beside = index.with_suffix(".part")
-        ET.ElementTree(root).write(beside, xml_declaration=True, encoding="utf-8")
+        ET.ElementTree(self._index).write(beside, xml_declaration=True, encoding="utf-8")
         os.replace(beside, index)
 
-    def _write_grid(self, series: ET.Element, time: float, path: Path) -> None:
-        grid = ET.SubElement(series, "Grid", Name=self.name, GridType="Uniform")
+    def _enter(self, time: float, path: Path) -> None:
+        """Add a frame file to the index."""
+        self._count += 1
+        grid = ET.SubElement(self._series, "Grid", Name=self.name, GridType="Uniform")
         ET.SubElement(grid, "Time", Value=repr(time))
         with h5py.File(path, "r") as file:
             cell, nodes = CELLS[str(file.attrs["kind"])]
