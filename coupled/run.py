@@ -140,6 +140,7 @@ class Run:
             self.scene.title, self.last, self.model.steps_done, wanted=progress and self.comm.rank == 0
         ) as bar:
             seen = observe(self.model, self.start)
+            self._on_root_alone(lambda: watch(self.model, seen))
             if not self.resumed:
                 self._write_due(seen, first=True)
             while self.model.steps_done < self.last:
