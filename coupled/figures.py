@@ -146,7 +146,7 @@ def _draw_structure(figure: Figure, axes: Axes, places: np.ndarray, frame: dict[
     axes.add_collection(cells)
     if stress.any():
         cells.set_array(stress / 1e6)
-        figure.colorbar(cells, ax=axes, label="von Mises [MPa]", aspect=15)
+        figure.colorbar(cells, ax=axes, label="von Mises [MPa]", aspect=18, shrink=0.75)
     else:
         cells.set_facecolor("0.55")
 
