@@ -1,0 +1,71 @@
+"""Small coupled models of the tests, built from scenes."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from coupled.build import Built, build
+from coupled.scene import Scene, load_scene
+
+
+
+def rigid_beam_on_springs(
+    *,
+    step: float,
+    load: float,
+    ramp_time: float = 0.0,
+    normal_damping: float = 0.0,
+    tangential_damping: float = 0.0,
+    more_loads: Sequence[dict[str, Any]] = (),
+    interface: dict[str, Any] | None = None,
+) -> Built:
+    """The scene `winkler_beam` with a rigid beam, 121 springs, and a uniform load [N/m] on top."""
+    tables = load_scene("winkler_beam", [f"time.step={step!r}"]).model_dump(exclude_none=True)
+    uniform = {"kind": "boundary", "boundary": "top", "total_force": [0.0, -load], "ramp_time": ramp_time}
+    tables["structure"] = {
+        "kind": "free_rigid",
+        "density": tables["structure"]["density"],
+        "beam": tables["structure"]["beam"],
+        "placement": tables["structure"]["placement"],
+        "loads": [uniform, *more_loads],
+    }
+    tables["contact"] |= {"normal_damping": normal_damping, "tangential_damping": tangential_damping}
+    tables["interface"] |= {"largest_stiffness_ratio": 100.0} | (interface or {})
+    return build(Scene.model_validate(tables))
+
+
+def discs_on_free_beam(
+    discs: list[list[float]],
+    *,
+    step: float,
+    friction: float = 0.0,
+    gravity: tuple[float, float] = (0.0, 0.0),
+    interface: dict[str, Any] | None = None,
+) -> Built:
+    """A free elastic beam, 0.2 x 0.02 m, without damping, and free discs (x, y, vx, vy, spin) above it."""
+    tables = {
+        "title": "Discs fall on a free beam",
+        "gravity": gravity,
+        "time": {"duration": 1.0, "step": step},
+        "grains": {
+            "sizes": [{"radius": 0.01, "count": len(discs)}],
+            "density": 1000.0,
+            "layout": "list",
+            "positions": discs,
+        },
+        "contact": {
+            "normal_stiffness": 1e6,
+            "tangential_stiffness": 5e4,
+            "friction": friction,
+            "rolling_friction": 0.1,
+        },
+        "structure": {
+            "kind": "elastic",
+            "density": 1000.0,
+            "youngs_modulus": 1e9,
+            "poissons_ratio": 0.3,
+            "beam": {"length": 0.2, "height": 0.02, "along": 20, "across": 2},
+            "placement": {"x": 0.0, "y": -0.01},
+        },
+        "interface": {"per_facet": 3, "boundaries": ["outer"], "largest_stiffness_ratio": 2.0} | (interface or {}),
+    }
+    return build(Scene.model_validate(tables))

@@ -1,0 +1,100 @@
+"""Exchange between grains and structure: where it is stable, and that the answer does not depend on it.
+
+A rigid beam on 121 springs is one mass on one spring: r = 121 k H^2 / m, with H the structure's
+step. It is pressed down gently, so that it oscillates about a static compression without lift-off.
+"""
+
+import numpy as np
+import pytest
+from small_models import rigid_beam_on_springs
+
+from coupled.build import build
+from coupled.errors import LeitoError
+from coupled.model import Model
+from coupled.scene import load_scene
+
+MASS, STIFFNESS, SPRINGS, LOAD = 135.0, 121 * 1.97e7, 121, 1.2e5
+
+
+def oscillation(
+    ratio: float, windows: int, *, damping_ratio: float = 0.0, substeps: int = 1, exchange: str = "predicted"
+) -> np.ndarray:
+    """Distance (windows,) from the static compression, over it; loaded over the first 100 windows."""
+    window = np.sqrt(ratio * MASS / STIFFNESS)
+    model = rigid_beam_on_springs(
+        step=window / substeps,
+        load=LOAD,
+        ramp_time=100.5 * window,
+        normal_damping=2 * damping_ratio * np.sqrt(STIFFNESS * MASS) / SPRINGS,
+        interface={"substeps": substeps, "exchange": exchange},
+    ).model
+    height = np.zeros(windows)
+    for k in range(windows):
+        model.advance(1)
+        height[k] = model.structure.centroid()[1]
+    return (height - 0.025) * STIFFNESS / LOAD + 1.0
+
+
+@pytest.mark.parametrize("damping_ratio", [0.0, 0.05, 0.3])
+def test_predicted_exchange_is_stable_up_to_its_limit_and_not_beyond(damping_ratio: float) -> None:
+    """One mode alternates in sign at the limit ``r + 2 c H/m = 2``; c H/m = 2 zeta sqrt(r)."""
+    root = np.sqrt(4 * damping_ratio**2 + 2) - 2 * damping_ratio  # sqrt(r) at the limit
+    below = oscillation(0.96 * root**2, 1500, damping_ratio=damping_ratio)
+    assert np.abs(below[-100:]).max() < 1e-9
+    above = oscillation(1.04 * root**2, 1500, damping_ratio=damping_ratio)
+    assert np.abs(above[-100:]).max() > 1e-2  # it grows until springs open
+
+
+@pytest.mark.parametrize("substeps", [1, 2, 5, 20])
+@pytest.mark.parametrize("ratio", [0.03, 0.3, 1.0])
+def test_predicted_exchange_feeds_no_energy_without_any_damping(ratio: float, substeps: int) -> None:
+    seen = np.abs(oscillation(ratio, 500, substeps=substeps))
+    assert seen[-100:].max() <= seen[150:250].max()
+
+
+@pytest.mark.parametrize("ratio", [0.01, 0.02])
+def test_lagged_exchange_grows_by_half_the_stiffness_ratio_each_step(ratio: float) -> None:
+    seen = np.abs(oscillation(ratio, 400, exchange="lagged"))
+    inside = np.arange(110, 399)
+    peaks = [k for k in inside if seen[k - 1] <= seen[k] >= seen[k + 1] and seen[k] < 0.9]
+    growth = np.polyfit(peaks, np.log(seen[peaks]), 1)[0]
+    assert len(peaks) > 5
+    assert growth == pytest.approx(ratio / 2, rel=0.05)  # peaks are read on the grid of steps
+
+
+def test_step_beyond_the_stable_ratio_is_refused() -> None:
+    with pytest.raises(LeitoError, match=r"stiffness ratio r = .* = 3\.74 .* time\.step at most"):
+        build(load_scene("winkler_beam", ["time.step=2e-4"]))
+    build(load_scene("winkler_beam", ["time.step=2e-4", "interface.largest_stiffness_ratio=4.0"]))
+
+
+def elastic_beam(*options: str) -> Model:
+    return build(load_scene("winkler_beam", ["structure.loads.0.ramp_time=0.2", *options])).model
+
+
+def test_substeps_do_not_change_the_answer_at_rest() -> None:
+    forces = []
+    for substeps in (1, 2, 5):
+        model = elastic_beam(f"interface.substeps={substeps}")
+        model.advance(round(0.45 / model.window))
+        forces.append(model.glued_force)
+    # The bounce has decayed by exp(-70 * 0.25) = 3e-8.
+    for force in forces[1:]:
+        assert np.abs(force - forces[0]).max() < 1e-7 * np.abs(forces[0]).max()
+
+
+def test_lagged_and_predicted_exchange_agree_at_small_steps() -> None:
+    """Their difference is k dt beside the dashpot c, so it falls with dt."""
+    gaps = []
+    for step in (4e-6, 2e-6, 1e-6):
+        reactions = []
+        for exchange in ("predicted", "lagged"):
+            model = elastic_beam(f"time.step={step!r}", f"interface.exchange={exchange}")
+            seen = []
+            for _ in range(20):
+                model.advance(round(1e-4 / step))
+                seen.append(model.reaction[1])
+            reactions.append(np.array(seen))
+        gaps.append(np.abs(reactions[1] - reactions[0]).max() / reactions[0].max())
+    assert gaps[-1] < 0.02
+    assert gaps[0] > 1.8 * gaps[1] > 1.8**2 * gaps[2]
