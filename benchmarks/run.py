@@ -1,0 +1,50 @@
+"""`make bench`: measure the speed of the particles, print one table, write results/latest.json.
+
+Only ratios taken in one run on one machine count. Rows that need another code are measured if
+`make bench-peers` has installed it, and stay empty otherwise.
+"""
+
+import argparse
+
+import measures
+import peers
+import report
+from rich.console import Console
+
+
+def main() -> None:
+    """Run all measurements, or those named."""
+    groups = {
+        "threads": lambda: measures.threads_15k(rates),
+        "sizes": lambda: measures.sizes(rates),
+        "features": lambda: measures.features(rates),
+        "phases": lambda: measures.phases(rates),
+        "ratio": lambda: measures.size_ratio(rates),
+        "start": measures.second_start,
+        "few": measures.few_discs,
+    }
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("groups", nargs="*", metavar="group", help=f"any of {', '.join(groups)}; default: all")
+    chosen = parser.parse_args().groups or list(groups)
+    if unknown := set(chosen) - set(groups):
+        parser.error(f"unknown group {', '.join(sorted(unknown))}: take any of {', '.join(groups)}")
+    rates = measures.Rates()
+    console = Console(stderr=True)
+    values: measures.Numbers = {}
+    for name in chosen:
+        with console.status(f"measuring {name}"):
+            values |= groups[name]()
+        console.print(f"{name}: done")
+    complete = len(chosen) == len(groups)
+    more = {"rates": rates.rows} if complete else {}
+    if complete and peers.installed():
+        with console.status("measuring LAMMPS"):
+            found, peer_rates = peers.measure()
+        values |= found
+        more["peer_rates"] = peer_rates
+    report.write(values, **more)
+    report.show()
+
+
+if __name__ == "__main__":
+    main()
