@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix, diags
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import eigsh, splu
 
 
 @dataclass(frozen=True)
@@ -40,16 +40,32 @@ class IndependentBeam:
     def __init__(
         self, *, length: float, height: float, along: int, across: int, young: float, poisson: float
     ) -> None:
-        self.length, self.along, self.across = length, along, across
+        self.length, self.height, self.along, self.across = length, height, along, across
         column, row = (a.ravel() for a in np.meshgrid(np.arange(along), np.arange(across)))
         first = row * (along + 1) + column
         corners = np.stack([first, first + 1, first + along + 2, first + along + 1], axis=1)
         unknowns = (2 * corners[:, :, None] + np.arange(2)).reshape(-1, 8)
         cell = quadrilateral_stiffness(young, poisson, length / along, height / across)
+        self._unknowns, self.size = unknowns, 2 * (along + 1) * (across + 1)
+        self.stiffness = self._assemble(cell)
+
+    def mass(self, density: float) -> csr_matrix:
+        """Consistent mass: the product of the masses (2, 1; 1, 2)/6 of a linear line along x and y."""
+        share = np.array([[4, 2, 1, 2], [2, 4, 2, 1], [1, 2, 4, 2], [2, 1, 2, 4]]) / 36
+        area = self.length * self.height / (self.along * self.across)
+        return self._assemble(density * area * np.kron(share, np.eye(2)))
+
+    def fastest_on_springs(self, springs: np.ndarray, stiffness: float, density: float) -> float:
+        """Largest omega^2 [1/s^2] of the mass on vertical `springs` [N/m], without its own stiffness."""
+        below = self._at_springs(springs, 1)
+        pulled = (stiffness * below.T @ below).tocsc()
+        return float(eigsh(pulled, 1, self.mass(density).tocsc(), return_eigenvectors=False)[0])
+
+    def _assemble(self, cell: np.ndarray) -> csr_matrix:
+        unknowns = self._unknowns
         places = (np.repeat(unknowns, 8, axis=1).ravel(), np.tile(unknowns, 8).ravel())
-        self.size = 2 * (along + 1) * (across + 1)
         values = np.tile(cell.ravel(), len(unknowns))
-        self.stiffness = coo_matrix((values, places), shape=(self.size, self.size)).tocsr()
+        return coo_matrix((values, places), shape=(self.size, self.size)).tocsr()
 
     def uniform(self, total: float) -> np.ndarray:
         """Nodal forces of a vertical force `total` [N/m] spread evenly over the upper face."""

@@ -104,7 +104,9 @@ def test_energy_error_and_interface_residual_fall_with_order_two(friction: float
     ],
     ids=["substeps", "lagged", "mean velocity"],
 )
-def test_interface_residual_of_the_other_exchanges(options: dict[str, Any], largest: float, order: float | None) -> None:
+def test_interface_residual_of_the_other_exchanges(
+    options: dict[str, Any], largest: float, order: float | None
+) -> None:
     residuals = []
     for step in (1e-5, 5e-6, 2.5e-6):
         model = falling(step, **options)

@@ -6,6 +6,7 @@ step. It is pressed down gently, so that it oscillates about a static compressio
 
 import numpy as np
 import pytest
+from independent_beam import IndependentBeam
 from small_models import rigid_beam_on_springs
 
 from coupled.build import build
@@ -43,6 +44,33 @@ def test_predicted_exchange_is_stable_up_to_its_limit_and_not_beyond(damping_rat
     assert np.abs(below[-100:]).max() < 1e-9
     above = oscillation(1.04 * root**2, 1500, damping_ratio=damping_ratio)
     assert np.abs(above[-100:]).max() > 1e-2  # it grows until springs open
+
+
+@pytest.mark.parametrize("dashpot", [0.0, 156.24])
+def test_elastic_beam_is_stable_up_to_the_limit_of_its_consistent_mass(dashpot: float) -> None:
+    """``omega^2 H^2 (1 + 2 c/(k H)) = 2``, with omega the fastest of the bare mass on its springs.
+
+    The beam's own stiffness, however large, does not move the limit: in the mode that alternates
+    in sign at each step displacement and velocity vanish at the limit. Consistent mass makes that
+    mode lighter than lumped nodes by the factor 2.2 here.
+    """
+    own = IndependentBeam(length=1.0, height=0.05, along=40, across=2, young=70e9, poisson=0.35)
+    fastest = own.fastest_on_springs(np.linspace(0.0, 1.0, SPRINGS), 1.97e7, 2700.0)
+    lag = 2 * dashpot / 1.97e7
+    limit = (np.sqrt(lag**2 + 8 / fastest) - lag) / 2
+    unevenness = []
+    for share in (0.97, 1.03):
+        model = elastic_beam(
+            f"time.step={share * limit!r}",
+            "structure.loads.0.ramp_time=0.02",
+            "structure.rayleigh.stiffness_factor=0.0",
+            f"contact.normal_damping={dashpot}",
+            "interface.largest_stiffness_ratio=10.0",
+        )
+        model.advance(1500)
+        unevenness.append(np.ptp(model.glued_force[:, 1]))
+    # At rest the forces range over 46 N of 1000 N; beyond the limit springs open.
+    assert unevenness[0] < 60.0 and unevenness[1] > 1000.0
 
 
 @pytest.mark.parametrize("substeps", [1, 2, 5, 20])
