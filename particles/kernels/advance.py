@@ -16,9 +16,8 @@ def block_forces(b, grains, pairs, walls, normal, tangential, rolling, ledger, d
 
 
 @kernel
-def prescribed_forces(grains, pairs, spins, ledger, dt):
-    b = grains.block_start.shape[0] - 2
-    add_incoming(b, grains, pairs, spins)
+def receive(b, grains, ledger, dt):
+    """Impulse on the prescribed grains (block `b`), and their work over the half step that ends now."""
     first = grains.block_start[b]
     for i in range(first, grains.block_start[b + 1]):
         grains.impulse[i - first, 0] += dt * grains.fx[i]
@@ -27,13 +26,24 @@ def prescribed_forces(grains, pairs, spins, ledger, dt):
         prescribed_work(b, grains, ledger, dt)
 
 
-def _forces(grains, pairs, walls, normal, tangential, rolling, ledger, dt):
-    """All contact forces at the present positions."""
-    n_blocks = grains.block_start.shape[0] - 1
-    for b in numba.prange(n_blocks):
-        block_forces(b, grains, pairs, walls, normal, tangential, rolling, ledger, dt)
-    for b in numba.prange(n_blocks):
-        add_incoming(b, grains, pairs, tangential is not None)
+@kernel
+def block_motion(b, grains, pairs, gravity_x, gravity_y, tangential, damping, ledger, reach2, drifts, dt):
+    """Kick block `b` (the prescribed one receives instead) and drift it into the next step if there is one."""
+    add_incoming(b, grains, pairs, tangential is not None)
+    if b == grains.block_start.shape[0] - 2:
+        receive(b, grains, ledger, dt)
+    else:
+        kick(b, grains, gravity_x, gravity_y, tangential, damping, ledger, dt)
+    if drifts:
+        return block_drift(b, grains, tangential, ledger, reach2, dt)
+    return 0
+
+
+@kernel
+def block_drift(b, grains, tangential, ledger, reach2, dt):
+    if ledger is not None and b == grains.block_start.shape[0] - 2:
+        prescribed_work(b, grains, ledger, dt)
+    return drift(b, grains, tangential is not None, reach2, dt)
 
 
 @kernel
@@ -48,32 +58,45 @@ def move_walls(walls, reach2, dt):
     return stale
 
 
+def _forces(grains, pairs, walls, normal, tangential, rolling, ledger, dt):
+    """All contact forces at the present positions."""
+    n_blocks = grains.block_start.shape[0] - 1
+    for b in numba.prange(n_blocks):
+        block_forces(b, grains, pairs, walls, normal, tangential, rolling, ledger, dt)
+    for b in numba.prange(n_blocks):
+        add_incoming(b, grains, pairs, tangential is not None)
+
+
 def _advance(
     grains, pairs, walls, gravity, normal, tangential, rolling, damping, ledger, drifted, reach2, steps, dt
 ):
     """Up to `steps` leapfrog steps: drift, contact forces, kick.
 
     Returns the number of steps done, and 1 if the list went stale: then the grains have drifted
-    into the next step and wait for a new list (`drifted` at the next call).
+    into the next step and wait for a new list (`drifted` at the next call). The kick of a step and
+    the drift of the next are one sweep. Blocks go backwards, so that the small prescribed one
+    falls to the thread that gets one block more than the others.
     """
     n_blocks = grains.block_start.shape[0] - 1
+    last = n_blocks - 1
     gravity_x, gravity_y = gravity[0], gravity[1]
-    spins = tangential is not None
     stale = np.zeros(n_blocks, np.int64)
+    if steps > 0 and not drifted:
+        for q in numba.prange(n_blocks):
+            stale[last - q] = block_drift(last - q, grains, tangential, ledger, reach2, dt)
+        if move_walls(walls, reach2, dt) or stale.any():
+            return 0, 1
     for step in range(steps):
-        if step > 0 or not drifted:
-            if ledger is not None:
-                prescribed_work(n_blocks - 1, grains, ledger, dt)
-            for b in numba.prange(n_blocks):
-                stale[b] = drift(b, grains, spins, reach2, dt)
+        drifts = step + 1 < steps
+        for q in numba.prange(n_blocks):
+            block_forces(last - q, grains, pairs, walls, normal, tangential, rolling, ledger, dt)
+        for q in numba.prange(n_blocks):
+            stale[last - q] = block_motion(
+                last - q, grains, pairs, gravity_x, gravity_y, tangential, damping, ledger, reach2, drifts, dt
+            )
+        if drifts:
             if move_walls(walls, reach2, dt) or stale.any():
-                return step, 1
-        for b in numba.prange(n_blocks):
-            block_forces(b, grains, pairs, walls, normal, tangential, rolling, ledger, dt)
-        for b in numba.prange(n_blocks - 1):
-            add_incoming(b, grains, pairs, spins)
-            kick(b, grains, gravity_x, gravity_y, tangential, damping, ledger, dt)
-        prescribed_forces(grains, pairs, spins, ledger, dt)
+                return step + 1, 1
     return steps, 0
 
 
