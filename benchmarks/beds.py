@@ -79,15 +79,15 @@ def settle(system: ParticleSystem, longest: float) -> State:
     return system.state()
 
 
-def from_lattice(sizes: Sequence[tuple[float, int]], width: float) -> State:
+def from_lattice(sizes: Sequence[tuple[float, int]], width: float, contact: ContactModel = FULL) -> State:
     """A bed of mixed sizes settled in a box."""
     grains = lattice(sizes, DENSITY, width=width, spacing=1.0, jitter=1.0)
-    return settle(_settling(grains, width), 1.0)
+    return settle(_settling(grains, width, contact), 1.0)
 
 
-def _settling(grains: Grains, width: float) -> ParticleSystem:
+def _settling(grains: Grains, width: float, contact: ContactModel = FULL) -> ParticleSystem:
     return ParticleSystem(
-        grains, FULL, time_step=SETTLING_FACTOR * source_bound(grains, FULL), walls=box(width, HEIGHT),
+        grains, contact, time_step=SETTLING_FACTOR * source_bound(grains, FULL), walls=box(width, HEIGHT),
         gravity=GRAVITY, damping=DRAG, ledger=False,
     )  # fmt: skip
 
@@ -95,6 +95,11 @@ def _settling(grains: Grains, width: float) -> ParticleSystem:
 def reference() -> State:
     """`settle15k`: 15 000 discs."""
     return cached("settle15k", lambda: from_lattice(SIZES, WIDTH))
+
+
+def reference_without_rolling() -> State:
+    """As many discs settled without rolling resistance: the reference would collapse without it."""
+    return cached("settle15k_without_rolling", lambda: from_lattice(SIZES, WIDTH, WITHOUT_ROLLING))
 
 
 def thousand() -> State:

