@@ -3,16 +3,8 @@
 import math
 
 from particles.kernels.jit import kernel
-from particles.kernels.laws import let_go, respond, rolling_stiffness
-from particles.kernels.layout import (
-    NORMAL_DASHPOT,
-    ROLLING_DASHPOT,
-    ROLLING_SLIP,
-    SLIDING,
-    TANGENTIAL_DASHPOT,
-    WALL_WORK,
-    Meeting,
-)
+from particles.kernels.layout import NOTHING_LOST, WALL_WORK, Meeting, Memory
+from particles.kernels.touch import add_losses, touch
 
 
 @kernel
@@ -21,35 +13,6 @@ def clear_forces(b, grains):
         grains.fx[i] = 0.0
         grains.fy[i] = 0.0
         grains.torque[i] = 0.0
-
-
-@kernel
-def remembers(k, spring, moment, tangential, dash_n, ledger):
-    """Whether slot `k` touched one step ago, so that it has something to let go."""
-    if ledger is not None:
-        if dash_n[k] != 0.0:
-            return True
-    if tangential is not None:
-        return spring[k] != 0.0 or moment[k] != 0.0
-    return False
-
-
-@kernel
-def add_losses(b, tangential, ledger, lost_n, lost_t, lost_r, lost_s, lost_p, dt):
-    """Enter one step's losses of block `b`.
-
-    All are trapezoidal works over the step, with the half-step velocity of the leapfrog: exactly
-    what the integrator takes from the kinetic energy m v(n-1/2) v(n+1/2) / 2, up to the turn of
-    the normal within one step. A slider loses its mean force times the slip (cut / stiffness),
-    the part of the motion that did not stretch its spring; opening is a slip to zero force.
-    """
-    if ledger is not None:
-        ledger.loss[b, NORMAL_DASHPOT] += 0.5 * dt * lost_n
-        ledger.loss[b, TANGENTIAL_DASHPOT] += 0.5 * dt * lost_t
-        ledger.loss[b, ROLLING_DASHPOT] += 0.5 * dt * lost_r
-        ledger.loss[b, ROLLING_SLIP] += 0.5 * lost_p
-        if tangential is not None:
-            ledger.loss[b, SLIDING] += 0.5 * lost_s / tangential.k_t
 
 
 @kernel
@@ -62,7 +25,7 @@ def pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt):
     start, partner, spring, moment = pairs.start, pairs.partner, pairs.spring, pairs.moment
     crossing, cross = pairs.crossing, pairs.crossing_start[b]
     dash_n, dash_t, dash_r = pairs.dash_n, pairs.dash_t, pairs.dash_r
-    lost_n = lost_t = lost_r = lost_s = lost_p = 0.0
+    lost = NOTHING_LOST
     for i in range(first, last):
         xi, yi, ri = x[i], y[i], radius[i]
         fxi = fyi = ti = 0.0
@@ -72,7 +35,12 @@ def pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt):
             d2 = dx * dx + dy * dy
             touching = d2 < reach * reach
             px = py = tj = 0.0
-            if touching or remembers(k, spring, moment, tangential, dash_n, ledger):
+            f_old = m_old = d_n = d_t = d_r = 0.0
+            if tangential is not None:
+                f_old, m_old = spring[k], moment[k]
+            if ledger is not None:
+                d_n, d_t, d_r = dash_n[k], dash_t[k], dash_r[k]
+            if touching or f_old != 0.0 or m_old != 0.0 or d_n != 0.0:
                 d = math.sqrt(d2)
                 nx, ny, delta = dx / d, dy / d, reach - d
                 ux, uy = vx[j] - vx[i], vy[j] - vy[i]
@@ -84,29 +52,12 @@ def pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt):
                 meeting = Meeting(
                     delta, ux * nx + uy * ny, v_t, omega_r, ri * radius[j] / reach, compliance[i] + compliance[j]
                 )
-                f_old = m_old = 0.0
-                if tangential is not None:
-                    f_old, m_old = spring[k], moment[k]
-                if touching:
-                    response = respond(normal, tangential, rolling, meeting, f_old, m_old, dt)
-                else:
-                    response = let_go(tangential, rolling, meeting, f_old, m_old, dt)
-                if ledger is not None:
-                    lost_n -= (dash_n[k] + response.dash_n) * meeting.v_n
-                    dash_n[k] = response.dash_n
-                    if tangential is not None:
-                        lost_s += (f_old + response.spring) * response.cut_t
-                        lost_t += (dash_t[k] + response.dash_t) * v_t
-                        dash_t[k] = response.dash_t
-                        if rolling is not None:
-                            if response.cut_r != 0.0:
-                                k_r = rolling_stiffness(rolling, tangential.k_t, meeting.r_r)
-                                lost_p += (m_old + response.moment) * response.cut_r / k_r
-                            if rolling.eta_r > 0.0:
-                                lost_r -= (dash_r[k] + response.dash_r) * omega_r
-                                dash_r[k] = response.dash_r
+                memory = Memory(f_old, m_old, d_n, d_t, d_r)
+                response, lost = touch(touching, normal, tangential, rolling, ledger, meeting, memory, lost, dt)
                 if tangential is not None:
                     spring[k], moment[k] = response.spring, response.moment
+                if ledger is not None:
+                    dash_n[k], dash_t[k], dash_r[k] = response.dash_n, response.dash_t, response.dash_r
                 px = -response.f_n * nx - response.f_t * ny
                 py = -response.f_n * ny + response.f_t * nx
                 ti += arm_i * response.f_t + response.m_t
@@ -125,7 +76,7 @@ def pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt):
         fx[i] += fxi
         fy[i] += fyi
         torque[i] += ti
-    add_losses(b, tangential, ledger, lost_n, lost_t, lost_r, lost_s, lost_p, dt)
+    add_losses(b, tangential, ledger, lost, dt)
 
 
 @kernel
@@ -136,7 +87,7 @@ def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
     radius, compliance = grains.radius, grains.roll_compliance
     spring, moment, force = walls.spring, walls.moment, walls.force
     dash_n, dash_t, dash_r = walls.dash_n, walls.dash_t, walls.dash_r
-    lost_n = lost_t = lost_r = lost_s = lost_p = 0.0
+    lost = NOTHING_LOST
     wall_work(b, walls, ledger, dt)
     for w in range(px.shape[0]):
         force[b, w, 0] = force[b, w, 1] = 0.0
@@ -145,7 +96,12 @@ def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
         nx, ny, ri = -wnx[w], -wny[w], radius[i]
         delta = ri + (x[i] - px[w]) * nx + (y[i] - py[w]) * ny
         touching = delta > 0.0
-        if not (touching or remembers(k, spring, moment, tangential, dash_n, ledger)):
+        f_old = m_old = d_n = d_t = d_r = 0.0
+        if tangential is not None:
+            f_old, m_old = spring[k], moment[k]
+        if ledger is not None:
+            d_n, d_t, d_r = dash_n[k], dash_t[k], dash_r[k]
+        if not (touching or f_old != 0.0 or m_old != 0.0 or d_n != 0.0):
             continue
         ux, uy = wvx[w] - vx[i], wvy[w] - vy[i]
         arm = v_t = omega_r = 0.0
@@ -153,29 +109,12 @@ def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
             arm, omega_r = ri - 0.5 * delta, omega[i]
             v_t = uy * nx - ux * ny - arm * omega[i]
         meeting = Meeting(delta, ux * nx + uy * ny, v_t, omega_r, ri, compliance[i])
-        f_old = m_old = 0.0
-        if tangential is not None:
-            f_old, m_old = spring[k], moment[k]
-        if touching:
-            response = respond(normal, tangential, rolling, meeting, f_old, m_old, dt)
-        else:
-            response = let_go(tangential, rolling, meeting, f_old, m_old, dt)
-        if ledger is not None:
-            lost_n -= (dash_n[k] + response.dash_n) * meeting.v_n
-            dash_n[k] = response.dash_n
-            if tangential is not None:
-                lost_s += (f_old + response.spring) * response.cut_t
-                lost_t += (dash_t[k] + response.dash_t) * v_t
-                dash_t[k] = response.dash_t
-                if rolling is not None:
-                    if response.cut_r != 0.0:
-                        k_r = rolling_stiffness(rolling, tangential.k_t, meeting.r_r)
-                        lost_p += (m_old + response.moment) * response.cut_r / k_r
-                    if rolling.eta_r > 0.0:
-                        lost_r -= (dash_r[k] + response.dash_r) * omega_r
-                        dash_r[k] = response.dash_r
+        memory = Memory(f_old, m_old, d_n, d_t, d_r)
+        response, lost = touch(touching, normal, tangential, rolling, ledger, meeting, memory, lost, dt)
         if tangential is not None:
             spring[k], moment[k] = response.spring, response.moment
+        if ledger is not None:
+            dash_n[k], dash_t[k], dash_r[k] = response.dash_n, response.dash_t, response.dash_r
         fx = -response.f_n * nx - response.f_t * ny
         fy = -response.f_n * ny + response.f_t * nx
         grains.fx[i] += fx
@@ -184,7 +123,7 @@ def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
         force[b, w, 0] -= fx
         force[b, w, 1] -= fy
     wall_work(b, walls, ledger, dt)
-    add_losses(b, tangential, ledger, lost_n, lost_t, lost_r, lost_s, lost_p, dt)
+    add_losses(b, tangential, ledger, lost, dt)
 
 
 @kernel

@@ -33,19 +33,27 @@ def _cache_folder() -> Path:
 CACHE_FOLDER = _cache_folder()
 
 
-def _compiled(function: Function, *, parallel: bool) -> Function:
+def _compiled(function: Function, *, parallel: bool = False, inline: bool = False) -> Function:
     before = config.CACHE_DIR
     # Numba names the cache file after the function alone: the two builds of one loop need two folders.
     config.CACHE_DIR = str(CACHE_FOLDER / ("threads" if parallel else "serial"))
     try:
-        return numba.njit(cache=True, parallel=parallel, error_model="numpy")(function)
+        return numba.njit(cache=True, parallel=parallel, forceinline=inline, error_model="numpy")(function)
     finally:
         config.CACHE_DIR = before
 
 
 def kernel(function: Function) -> Function:
     """Compile a function for one thread, cached on disk."""
-    return _compiled(function, parallel=False)
+    return _compiled(function)
+
+
+def inner_kernel(function: Function) -> Function:
+    """Compile a function that is called for every contact: always inlined.
+
+    Left to itself the compiler calls a long one, and counts references to its arrays at each call.
+    """
+    return _compiled(function, inline=True)
 
 
 def threaded_kernel(function: Function) -> Function:

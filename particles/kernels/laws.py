@@ -2,7 +2,7 @@
 
 import math
 
-from particles.kernels.jit import kernel
+from particles.kernels.jit import inner_kernel, kernel
 from particles.kernels.layout import Response
 
 
@@ -62,7 +62,7 @@ def time_in_contact(delta, v_n, dt):
     return dt
 
 
-@kernel
+@inner_kernel
 def respond(normal, tangential, rolling, meeting, f_old, m_old, dt):
     """All laws of one touching pair. A law that is `None` is not compiled."""
     f_n, dash_n = linear_normal(normal, meeting.delta, meeting.v_n)
@@ -79,7 +79,7 @@ def respond(normal, tangential, rolling, meeting, f_old, m_old, dt):
     return Response(f_n, f_t, m_t, f, m, dash_n, f_t - f, m_t - m, cut_t, cut_r)
 
 
-@kernel
+@inner_kernel
 def let_go(tangential, rolling, meeting, f_old, m_old, dt):
     """A contact that opened in this step: no force, all that its springs held is cut."""
     cut_t = cut_r = 0.0

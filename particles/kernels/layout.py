@@ -122,6 +122,16 @@ class Meeting(NamedTuple):
     compliance: float
 
 
+class Memory(NamedTuple):
+    """What a contact knows of the step before: its springs, and its dashpots for the ledger."""
+
+    spring: float
+    moment: float
+    dash_n: float
+    dash_t: float
+    dash_r: float
+
+
 class Response(NamedTuple):
     """What a contact does: totals, spring parts, the dashpots' share, and what the limits cut off."""
 
@@ -135,3 +145,16 @@ class Response(NamedTuple):
     dash_r: float
     cut_t: float
     cut_r: float
+
+
+class Lost(NamedTuple):
+    """Sums over the contacts of one block in one step, to be scaled by `touch.add_losses`."""
+
+    n: float  # powers of the dashpots, at both ends of the step
+    t: float
+    r: float
+    s: float  # forces times cuts of the sliders
+    p: float
+
+
+NOTHING_LOST = Lost(0.0, 0.0, 0.0, 0.0, 0.0)
