@@ -31,7 +31,8 @@ def main() -> None:
             prepare = "yes"  # a run after a change sets itself up anew
             print("done", flush=True)
         else:
-            engine.command(f"write_dump all custom {value.strip()} id x y vx vy radius modify sort id format float %.17g")
+            columns = "id x y vx vy radius modify sort id format float %.17g"
+            engine.command(f"write_dump all custom {value.strip()} {columns}")
             print("written", flush=True)
 
 

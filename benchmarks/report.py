@@ -11,6 +11,8 @@ from typing import NamedTuple
 from rich.console import Console
 from rich.table import Table
 
+QUIET = 0.7  # load average above which times are not to be trusted
+LOAD_BEFORE = os.getloadavg()[0]
 RESULTS = Path(__file__).parent / "results" / "latest.json"
 
 
@@ -46,7 +48,7 @@ def machine() -> dict[str, object]:
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     return {
         "processor": model, "cores": len(os.sched_getaffinity(0)), "memory_gib": round(memory / 2**30, 1),
-        "system": f"{platform.system()} {platform.machine()}", "load_average": os.getloadavg()[0],
+        "system": f"{platform.system()} {platform.machine()}", "load_average": LOAD_BEFORE,
     }  # fmt: skip
 
 
@@ -67,15 +69,11 @@ def entry(name: str, value: float | None) -> dict[str, object]:
 def write(values: Mapping[str, float | None], **more: object) -> None:
     """Write all rows in the order of the goals; what was not measured now keeps its last value."""
     before = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
-    last = {name: before.get(name, {}).get("value") for name in GOALS}
-    content: dict[str, object] = {name: entry(name, values.get(name, last[name])) for name in GOALS}
-    kept = {name: before[name] for name in before if name not in GOALS}
-    content |= kept | {"machine": machine(), "versions": kept.get("versions", {}) | versions()}
-    for name, value in more.items():
-        if isinstance(value, dict) and isinstance(content.get(name), dict):
-            content[name] = {**content[name], **value}  # type: ignore[dict-item]
-        else:
-            content[name] = value
+    content: dict[str, object] = {
+        name: entry(name, values.get(name, before.get(name, {}).get("value"))) for name in GOALS
+    }
+    content |= {name: before[name] for name in before if name not in GOALS}
+    content |= more | {"machine": machine(), "versions": versions()}
     RESULTS.parent.mkdir(exist_ok=True)
     RESULTS.write_text(json.dumps(content, indent=2) + "\n")
 
@@ -96,6 +94,9 @@ def show() -> None:
     for rate in content.get("rates", []):
         name = f"{rate['what']}, {rate['discs']} discs, {rate['threads']} threads"
         table.add_row(name, f"{rate['particle_steps_per_second']:.3g}", "1/s", "", "")
-    for name, rate in content.get("peer_rates", {}).items():
+    for name, rate in content.get("peers", {}).get("particle_steps_per_second", {}).items():
         table.add_row(name, f"{rate:.3g}", "1/s", "", "")
-    Console(width=110).print(table)
+    console = Console(width=110)
+    console.print(table)
+    if (load := content["machine"]["load_average"]) > QUIET:
+        console.print(f"[red]load average {load:.2g} before the runs: others were at work, take these times again[/]")

@@ -36,12 +36,11 @@ def main() -> None:
             values |= groups[name]()
         console.print(f"{name}: done")
     complete = len(chosen) == len(groups)
-    more = {"rates": rates.rows} if complete else {}
+    more: dict[str, object] = {"rates": rates.rows} if complete else {}
     if complete and peers.installed():
         with console.status("measuring LAMMPS"):
-            found, peer_rates = peers.measure()
-        values |= found
-        more["peer_rates"] = peer_rates
+            ratios, more["peers"] = peers.measure()
+        values |= ratios
     report.write(values, **more)
     report.show()
 

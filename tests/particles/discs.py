@@ -22,7 +22,9 @@ from particles import (
 FLOOR = Wall(point=(0.0, 0.0), normal=(0.0, 1.0), name="floor")
 
 
-def normal_only(grains: Grains, *, k_n: float, c_n: float = 0.0, may_pull: bool = False, **options: Any) -> ParticleSystem:
+def normal_only(
+    grains: Grains, *, k_n: float, c_n: float = 0.0, may_pull: bool = False, **options: Any
+) -> ParticleSystem:
     """Discs with the normal spring and dashpot alone: they do not turn."""
     return ParticleSystem(
         grains, ContactModel(normal=LinearSpringDashpot(stiffness=k_n, damping=c_n, may_pull=may_pull)), **options
@@ -53,7 +55,9 @@ def full_law(
     return ParticleSystem(grains, model, damping=GlobalDamping(translational=alpha_t, rotational=alpha_r), **options)
 
 
-def resting_disc(*, radius: float, mass: float, gravity: float, k_n: float, vx: float = 0.0, spin: float = 0.0) -> Grains:
+def resting_disc(
+    *, radius: float, mass: float, gravity: float, k_n: float, vx: float = 0.0, spin: float = 0.0
+) -> Grains:
     """One disc on the floor y = 0 with the overlap that carries its weight."""
     height = radius - mass * gravity / k_n
     return Grains.discs([[0.0, height]], radius, mass / (np.pi * radius**2), velocity=[[vx, 0.0]], spin=spin)
@@ -80,7 +84,6 @@ def packing(
     place = np.arange(n)
     position = pitch * (np.column_stack([place % columns, place // columns]) + 0.5)
     position += 0.2 * pitch * rng.uniform(-1.0, 1.0, (n, 2))
-    grains = Grains.discs(
-        position, radius, 1600.0, velocity=speed * rng.standard_normal((n, 2)), spin=speed / smallest * rng.standard_normal(n)
-    )
+    velocity, spin = speed * rng.standard_normal((n, 2)), speed / smallest * rng.standard_normal(n)
+    grains = Grains.discs(position, radius, 1600.0, velocity=velocity, spin=spin)
     return grains, pitch * columns, pitch * (n // columns)

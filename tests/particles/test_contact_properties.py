@@ -46,7 +46,8 @@ def test_contact_forgets_its_spring_when_it_opens() -> None:
 
 def test_no_force_without_overlap() -> None:
     gap = 1e-12
-    grains = Grains.discs([[0.0, R + gap], [2.0 * R + gap, R + gap]], R, RHO, velocity=[[0.0, 0.0], [-1e-9, 0.0]], spin=100.0)
+    place, velocity = [[0.0, R + gap], [2.0 * R + gap, R + gap]], [[0.0, 0.0], [-1e-9, 0.0]]
+    grains = Grains.discs(place, R, RHO, velocity=velocity, spin=100.0)
     system = full_law(grains, **LAW, c_n=6.0, c_t=1.0, mu_r=0.2, eta_r=0.3, walls=[FLOOR], time_step=DT)
     system.advance(5)
     for name in ("fx", "fy", "torque"):

@@ -122,8 +122,9 @@ def test_rolling_dashpot_takes_the_energy_of_a_slow_roll() -> None:
     radius, mass, v0 = 0.005, 0.083, 0.002
     grains = resting_disc(radius=radius, mass=mass, gravity=G, k_n=6.5e6, vx=v0, spin=-v0 / radius)
     system = full_law(
-        grains, k_n=6.5e6, k_t=3e5, mu=1e6, mu_r=1e6, eta_r=0.5, k_r=8.1e-2, walls=[FLOOR], gravity=(0.0, -G), time_step=5e-6
-    )
+        grains, k_n=6.5e6, k_t=3e5, mu=1e6, mu_r=1e6, eta_r=0.5, k_r=8.1e-2, walls=[FLOOR], gravity=(0.0, -G),
+        time_step=5e-6,
+    )  # fmt: skip
     system.advance(round(0.5 / 5e-6))
     assert only("rolling_dashpot", system, share=1e-6) == pytest.approx(0.75 * mass * v0**2, rel=1e-3)
 
