@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from coupled.build import WARNED_RATIO, Built
+from coupled.build import WARNED_SHARE, Built, stable_ratio
 from coupled.observe import Observation
 
 LARGE_STRAIN, LARGE_ROTATION = 0.02, 0.1
@@ -17,10 +17,10 @@ def before(built: Built) -> list[str]:
         said.append(
             f"time.step is {built.stable_dt_ratio:.2f} times the source's bound 0.5 sqrt(m/k): watch the energy ledger"
         )
-    if built.stiffness_ratio > WARNED_RATIO:
+    if scene.interface is not None and built.stiffness_ratio > WARNED_SHARE * stable_ratio(scene):
         said.append(
-            f"stiffness ratio r = {built.stiffness_ratio:.2f} of the coupling is above {WARNED_RATIO:g} (stable up to 2): "
-            "a smaller time.step makes the interface more accurate"
+            f"stiffness ratio r = {built.stiffness_ratio:.2f} of the coupling is close to or above "
+            f"{stable_ratio(scene):g}, the limit on fixed partners: take a smaller time.step"
         )
     if scene.interface is not None and scene.interface.exchange == "lagged" and built.stiffness_ratio > 0.0:
         said.append('interface.exchange = "lagged" feeds energy into the interface at any step; "predicted" does not')

@@ -12,7 +12,7 @@ from mpi4py import MPI
 
 from coupled import bed as beds
 from coupled import cautions
-from coupled.build import Built, build
+from coupled.build import Built, build, stable_ratio
 from coupled.output.folder import SUMMARY
 from coupled.scene import Scene, SettledGrains
 from particles import source_bound
@@ -106,7 +106,7 @@ def _structure_rows(scene: Scene, built: Built) -> list[Row]:
         glued = built.model.glued
         rows += [
             ("interface", "glued grains, diameter", f"{len(glued)}, {2 * glued.radius:.4g} m"),
-            ("interface", "stiffness ratio r (stable up to 2)", f"{built.stiffness_ratio:.3g}"),
+            ("interface", f"stiffness ratio r (stable up to {stable_ratio(scene):g})", f"{built.stiffness_ratio:.3g}"),
         ]
     return rows
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from coupled.errors import LeitoError
 from meshes import BoundaryPolyline
 
 Floats = NDArray[np.float64]
+POWER_STEPS, POWER_TOLERANCE = 300, 1e-4  # of the power iteration for the stiffness ratio
 
 
 class GluedGrains:
@@ -99,15 +100,30 @@ class GluedGrains:
         """Forces (n_b, 2) [N/m] on the nodes from forces (n_glued, 2) on the glued grains."""
         return self._transpose @ force
 
-    def stiffness_ratio(self, contact_stiffness: float, boundary_mass: Floats, interval: float) -> float:
-        """The coupling's r = k dt^2 / M of the worst boundary node.
+    def stiffness_ratio(
+        self,
+        stiffness: float,
+        dashpot: float,
+        interval: float,
+        acceleration_by: Callable[[Floats], Floats],
+    ) -> float:
+        """The coupling's ``r = H^2 (k + 2 c/H) lambda``, with lambda the largest eigenvalue of P M^-1 P^T.
 
-        k is the sum of the contact stiffnesses of the glued grains, one contact each, by their
-        share of the node; M its lumped mass [kg/m]; dt the structure's step [s]. The lagged
-        exchange amplifies by about 1 + r/2 per step, the predicted one is stable up to r = 2.
+        That of every glued grain on a spring k [N/m] and a dashpot c [N s/m] to a fixed partner, H
+        [s] the structure's step: the predicted exchange is stable up to r = 2 (one mode that
+        alternates in sign; the structure's own stiffness does not move the limit). Free partners
+        give way, so a bed of grains bears more. `acceleration_by` maps nodal forces (n_b, 2) to
+        boundary accelerations (n_b, 2); power iteration.
         """
-        share = np.asarray(self.operator.sum(axis=0)).ravel() * contact_stiffness
-        return float(np.max(share * interval**2 / boundary_mass))
+        force = np.random.default_rng(0).normal(size=(len(self), 2))
+        growth = 0.0
+        for _ in range(POWER_STEPS):
+            force /= np.linalg.norm(force)
+            force = self.operator @ acceleration_by(self.nodal_forces(force))
+            before, growth = growth, float(np.linalg.norm(force))
+            if abs(growth - before) <= POWER_TOLERANCE * growth:
+                break
+        return (interval**2 * stiffness + 2.0 * interval * dashpot) * growth
 
 
 def _weights(first: NDArray[np.int64], second: NDArray[np.int64], fraction: Floats, nodes: int) -> csr_matrix:

@@ -24,13 +24,14 @@ class Structure(Protocol):
     comm: MPI.Intracomm
     polyline: BoundaryPolyline
     mass: float
-    boundary_mass: Floats
     boundary_displacement: Floats
     time_step: float
 
     @property
     def time(self) -> float: ...
     def advance(self, boundary_force: Floats) -> None: ...
+    def begin_under(self, boundary_force: Floats) -> None: ...
+    def acceleration_by(self, boundary_force: Floats) -> Floats: ...
     def predict(self, interval: float, order: int = 2) -> Floats: ...
     def energies(self) -> StructureEnergies: ...
     def centroid(self) -> Floats: ...
@@ -93,6 +94,8 @@ class Model:
             self.places = particles.grains.bodies()[self.GLUED]
             particles.start()
             self._collect(particles.force_on(self.places))
+        if structure is not None and glued is not None:
+            structure.begin_under(self.nodal_force)
 
     @property
     def time(self) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from coupled.build import Built
+from coupled.build import Built, stable_ratio
 from coupled.observe import Observation
 
 
@@ -39,6 +39,7 @@ def summarise(
         "particle_steps_per_second": peaks["particle_steps"] / seconds["grains"] if seconds.get("grains") else 0.0,
         "stable_dt_ratio": built.stable_dt_ratio,
         "stiffness_ratio_r": built.stiffness_ratio,
+        "stable_ratio": stable_ratio(built.scene) if model.glued is not None else 0.0,
         "ledger_relative_error": numbers["ledger_relative_error"],
         "ledger_error": numbers["ledger_error"],
         "energy_turned_over": seen.balance.throughput,
@@ -84,7 +85,7 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
             f"{100 * summary['stable_dt_ratio']:.0f} % of the source's bound"
         )
     if summary["stiffness_ratio_r"]:
-        lines.append(f"  stiffness ratio r        {summary['stiffness_ratio_r']:12.3g}       stable up to 2")
+        lines.append(f"  stiffness ratio r        {summary['stiffness_ratio_r']:12.3g}       stable up to {summary['stable_ratio']:g} on fixed partners")
     parts = ", ".join(f"{name} {seconds:.1f}" for name, seconds in summary["wall_seconds_by_part"].items() if seconds)
     lines.append(f"  wall time [s]            {parts}")
     lines.append(f"  files in                 {folder}")

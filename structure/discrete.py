@@ -25,8 +25,6 @@ class DiscreteBody:
         Consistent mass [kg/m].
     mass, centroid, inertia
         Mass [kg/m], reference centroid (2,) [m], polar moment of inertia about it [kg m].
-    lumped_mass : (owned nodes,)
-        Diagonal of the consistent mass scaled to the total mass [kg/m].
     """
 
     def __init__(self, mesh: StructureMesh, density: float) -> None:
@@ -47,8 +45,6 @@ class DiscreteBody:
         turning = self.weigh(np.column_stack([-arm[:, 1], arm[:, 0]]).ravel())
         self.inertia = self.total(radial @ arm.ravel())
         self._measures = np.array([along_x, along_y, turning, radial])
-        diagonal = self.mass_matrix.getDiagonal().array.reshape(-1, 2)[:, 0]
-        self.lumped_mass = diagonal * (self.mass / self.total(diagonal.sum()))
 
     def total(self, share: float) -> float:
         """Sum over the ranks."""
@@ -77,8 +73,3 @@ class DiscreteBody:
         """
         cross, along = self.comm.allreduce(self._measures[2:] @ displacement)
         return math.atan2(cross, self.inertia + along)
-
-    def boundary_mass(self) -> NDArray[np.float64]:
-        """Lumped mass (n_b,) [kg/m] of the nodes of the outer polyline."""
-        flat = np.repeat(self.lumped_mass, 2)
-        return self.nodes.gather(flat)[self.mesh.outer_nodes, 0]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from structure.loads import Load
 from structure.material import PlaneStrain, Rayleigh
 from structure.newmark import Newmark, NewmarkStepper
 from structure.results import StructureEnergies, StructureFields, StructurePeaks, cell_kind
+from structure.solver import factorise
 from structure.statics import balanced_displacement
 from structure.stress import StressProbe
 
@@ -45,8 +46,6 @@ class ElasticStructure:
     ----------
     comm, polyline, mass, time_step
         Communicator, reference outer boundary, mass [kg/m], step [s].
-    boundary_mass : (n_b,)
-        Lumped mass [kg/m] of each boundary node.
     boundary_displacement, boundary_velocity, boundary_acceleration : (n_b, 2)
         [m], [m/s], [m/s^2], in the order of ``polyline.points``, on every rank; new arrays at
         each step.
@@ -68,7 +67,6 @@ class ElasticStructure:
         self.material, self.damping, self.time_step = material, damping, float(time_step)
         self._body = DiscreteBody(mesh, material.density)
         self.mass = self._body.mass
-        self.boundary_mass = self._body.boundary_mass()
         self._stiffness = forms.stiffness_matrix(self._body.space, material, mesh.order)
         self._stepper = NewmarkStepper(
             mass=self._body.mass_matrix,
@@ -80,6 +78,7 @@ class ElasticStructure:
         self._exchange = boundary_exchange(self._body.nodes, mesh.outer_nodes, self.comm)
         self._loads = LoadVectors(self._body, loads)
         self._probe: StressProbe | None = None
+        self._mass_solve: Callable[[PETSc.Vec, PETSc.Vec], None] | None = None
         self._ledger = ledger
         self.set_initial()
 
@@ -119,6 +118,30 @@ class ElasticStructure:
         self._exchange.add(self._force, stepper.force)
         stepper.start()
         self._read_boundary()
+
+    def begin_under(self, boundary_force: NDArray[np.float64]) -> None:
+        """Start anew at t = 0 from the present shape and motion, under nodal forces (n_b, 2) [N/m]."""
+        gather, stepper = self._body.nodes.gather, self._stepper
+        self.set_initial(
+            displacement=gather(stepper.displacement),
+            velocity=gather(stepper.velocity),
+            boundary_force=boundary_force,
+        )
+
+    def acceleration_by(self, boundary_force: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Boundary acceleration (n_b, 2) [m/s^2] that nodal forces (n_b, 2) [N/m] alone cause.
+
+        ``(M^-1)_bb f`` with the consistent mass: what a step feels first, whatever the stiffness.
+        """
+        if self._mass_solve is None:
+            self._mass_solve = factorise(self._body.mass_matrix)
+        right, left = self._body.mass_matrix.createVecs()
+        right.set(0.0)
+        self._exchange.add(
+            agreed_force(boundary_force, self.polyline.points.shape, self.comm), right.array
+        )
+        self._mass_solve(right, left)
+        return self._exchange.read((left.array,), ())[0][0]
 
     def advance(self, boundary_force: NDArray[np.float64]) -> None:
         """One step with nodal forces (n_b, 2) [N/m] that act at its end; rank 0's count."""

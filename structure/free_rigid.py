@@ -30,8 +30,7 @@ class FreeRigid:
     step and ``T_m`` the moment of the mean forces in the middle of it,
     ``I (w1 - w) = dt sin(da/2)/(da/2) T_m``, ``da = dt (w + w1)/2``. The chord in place of the
     arc makes the trapezoidal work of the nodal forces equal to the change of kinetic energy
-    exactly. Order 2. The interface is that of `ElasticStructure`; `boundary_mass` shares the mass
-    evenly among the boundary nodes.
+    exactly. Order 2. The interface is that of `ElasticStructure`.
 
     Parameters
     ----------
@@ -56,7 +55,6 @@ class FreeRigid:
         self.mass, self.inertia = body.mass, body.inertia
         self._reference_centroid = body.centroid
         self._arms = self.polyline.points - body.centroid
-        self.boundary_mass = np.full(len(self._arms), self.mass / len(self._arms))
         self._loads = LoadVectors(body, loads)
         full = [body.nodes.gather(vector) for vector in self._loads.full]
         arms = mesh.points - body.centroid
@@ -94,6 +92,26 @@ class FreeRigid:
         self._external = self._external_at(0.0)
         self._boundary = _resultants(self._arms, self._force)
         self._settle(self._motion)
+
+    def begin_under(self, boundary_force: NDArray[np.float64]) -> None:
+        """Start anew at t = 0 with the present velocity, under nodal forces (n_b, 2) [N/m]."""
+        now = self._motion
+        self.set_initial(
+            velocity=tuple(now.velocity), spin=now.spin, angle=now.angle, boundary_force=boundary_force
+        )
+
+    def acceleration_by(self, boundary_force: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Boundary acceleration (n_b, 2) [m/s^2] that nodal forces alone cause on the body at rest."""
+        force = agreed_force(boundary_force, self._arms.shape, self.comm)
+        resultants = _resultants(self._arms, force)
+        turning = RigidMotion(
+            shift=np.zeros(2),
+            angle=0.0,
+            velocity=np.zeros(2),
+            acceleration=resultants[:2] / self.mass,
+            angular_acceleration=float(resultants[2]) / self.inertia,
+        )
+        return turning.acceleration_of(self._arms)
 
     def advance(self, boundary_force: NDArray[np.float64]) -> None:
         """One step with nodal forces (n_b, 2) [N/m] that act at its end; rank 0's count."""

@@ -17,7 +17,7 @@ from structure.rigid_motion import NO_STRESS, RigidMotion, rigid_fields
 class PrescribedRigid:
     """Rigid body whose displacement is piecewise linear in time; it never turns.
 
-    Attributes are those of `ElasticStructure`; `boundary_mass` is infinite, as nothing moves it.
+    Attributes are those of `ElasticStructure`.
     At a way point the velocity is that of the piece ahead; after the last one the body rests.
     The interface is that of `ElasticStructure`.
 
@@ -51,7 +51,6 @@ class PrescribedRigid:
         self._velocities[:-1] = np.diff(self._places, axis=0) / np.diff(self._times)[:, None]
         body = DiscreteBody(mesh, 1.0 if density is None else density)
         self.mass = 0.0 if density is None else body.mass
-        self.boundary_mass = np.full(len(self.polyline.points), np.inf)
         self._reference_centroid = body.centroid
         self._steps = 0
         self._drive_work = self._boundary_work = 0.0
@@ -62,6 +61,14 @@ class PrescribedRigid:
     def time(self) -> float:
         """Time [s] since the start."""
         return self._steps * self.time_step
+
+    def begin_under(self, boundary_force: NDArray[np.float64]) -> None:
+        """Account for nodal forces (n_b, 2) [N/m] from t = 0 on."""
+        self._force = agreed_force(boundary_force, self._force.shape, self.comm)
+
+    def acceleration_by(self, boundary_force: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Zero (n_b, 2): no force moves a prescribed body."""
+        return np.zeros_like(self._force)
 
     def advance(self, boundary_force: NDArray[np.float64]) -> None:
         """One step along the path; the nodal forces (n_b, 2) [N/m] are only accounted for."""

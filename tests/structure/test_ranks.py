@@ -42,7 +42,8 @@ for step in range(150):
         out["predicted"] = body.predict(1e-3)
 for name, one in (("body", body), ("free", free)):
     out |= {name + "_" + key: getattr(one, "boundary_" + key)
-            for key in ("displacement", "velocity", "acceleration", "mass")}
+            for key in ("displacement", "velocity", "acceleration")}
+    out[name + "_response"] = one.acceleration_by(np.cos(line.points))
     out |= {name + "_" + key: np.array(value) for key, value in vars(one.energies()).items()}
     for key in ("centroid", "mean_rotation", "momentum", "external_force"):
         out[name + "_" + key] = np.array(getattr(one, key)())
