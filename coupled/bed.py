@@ -8,14 +8,16 @@ from typing import Any
 
 from coupled.output import checkpoint
 from coupled.scene import Scene, dump_scene
+from particles.kernels.layout import GrainArrays, PairArrays, WallArrays
 
 BEDS = "beds"
 
 
 def bed_folder(scene: Scene, runs: Path) -> Path:
-    """Where the bed of a scene lives: named after the bed and a hash of all that shapes it."""
+    """Where the bed of a scene lives: named after the bed and a hash of all that shapes it, the layout included."""
     shaping = scene.bed.model_copy(update={"output": type(scene.bed.output)(), "title": "bed"})
-    digest = hashlib.sha256(dump_scene(shaping).encode()).hexdigest()[:10]
+    layout = " ".join(GrainArrays._fields + PairArrays._fields + WallArrays._fields)
+    digest = hashlib.sha256((dump_scene(shaping) + layout).encode()).hexdigest()[:10]
     return runs / BEDS / f"{Path(scene.grains.bed).stem}-{digest}"
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from particles.contact import ContactModel
 from particles.errors import ParticleError
 from particles.kernels import cells
-from particles.kernels.layout import PairArrays, WallArrays
+from particles.kernels.layout import Grid, PairArrays, WallArrays
 from particles.state import Grains
 from particles.walls import Wall
 
@@ -17,14 +17,13 @@ STEPS_WANTED = 40  # between lists, at the speed of the fastest grain
 ONE_BLOCK = 2000  # free grains below which blocks do not pay
 
 
-class Grid(NamedTuple):
-    """Uniform cells over the bounding box of all grains."""
+class Level(NamedTuple):
+    """Grains of similar size, sorted by cells of their own."""
 
-    x_min: float
-    y_min: float
-    size: float
-    columns: int
-    rows: int
+    members: np.ndarray
+    grid: Grid
+    order: np.ndarray
+    cell_start: np.ndarray
 
 
 def block_starts(n_free: int, n: int) -> np.ndarray:
@@ -58,7 +57,8 @@ class ContactList:
         self.contact = contact
         self.ledger = ledger
         self.skin = 0.0
-        self.pairs = self._pair_arrays(np.zeros(1, np.int64), np.zeros(0, np.int32))
+        none = np.zeros(0, np.uint32)
+        self.pairs = self._pair_arrays(np.zeros(1, np.int64), none, none, np.zeros(2, np.int64))
         self.walls = self._wall_arrays(walls)
 
     @property
@@ -71,20 +71,45 @@ class ContactList:
         self._require_finite(grains)
         first = len(self.pairs.start) == 1
         self.skin = choose_skin(grains, dt)
-        grid = self._grid(grains)
-        order, cell_start = cells.sort_by_cell(grains.x, grains.y, 0, grains.n_free, *grid)
+        order = self._storage_order(grains)
         grains.reorder(order)
         grains.x_listed[:], grains.y_listed[:] = grains.x, grains.y
         old_of = np.concatenate([order, np.arange(grains.n_free, len(grains))])
-        start, partner = self._near_pairs(grains, grid, cell_start)
+        before, rows = self.pairs, cells.rows_of(self._near_pairs(grains), len(grains))
+        self.pairs = self._pair_arrays(*rows, block_starts(grains.n_free, len(grains)))
         if first:
-            self._require_apart(grains, start, partner)
-        before, self.pairs = self.pairs, self._pair_arrays(start, partner, block_starts(grains.n_free, len(grains)))
-        if not first:
+            self._require_apart(grains)
+        else:
             cells.carry_pairs(
-                old_of, before.start, before.partner, _history(before), start, partner, _history(self.pairs)
+                old_of, before.start, before.partner, _history(before), *rows[::2], _history(self.pairs)
             )
         self._rebuild_walls(grains, old_of)
+
+    def _storage_order(self, grains: Grains) -> np.ndarray:
+        """Order in memory of the free grains: by cells of the smallest size, columns first."""
+        free = np.arange(grains.n_free)
+        if grains.n_free == 0:
+            return free
+        grid = self._grid(grains, _levels(grains.radius[: grains.n_free])[0][1])
+        return cells.sort_by_cell(grains.x, grains.y, free, grid)[0]
+
+    def _near_pairs(self, grains: Grains) -> np.ndarray:
+        """All near pairs (k, 2), lower index first."""
+        levels = []
+        for members, largest in _levels(grains.radius):
+            grid = self._grid(grains, largest)
+            levels.append(Level(members, grid, *cells.sort_by_cell(grains.x, grains.y, members, grid)))
+        state = (grains.x, grains.y, grains.radius, grains.body, self.skin)
+        capacity = max(len(self.pairs.partner) * 5 // 4, 4 * grains.n_free) + 1024
+        while True:
+            found, count = np.empty((capacity, 2), np.int32), 0
+            for k, level in enumerate(levels):
+                count = cells.pairs_within(*state, *level[1:], found, count)
+                for coarser in levels[k + 1 :]:
+                    count = cells.pairs_between(*state, level.members, *coarser[1:], found, count)
+            if count <= capacity:
+                return found[:count]
+            capacity = count
 
     def take_over(self, saved: Mapping[str, np.ndarray], n: int) -> None:
         """Adopt the histories of a saved list of the same free grains, now followed by others up to `n`."""
@@ -104,24 +129,6 @@ class ContactList:
                     arrays[name] = fresh
             setattr(self, group, type(own)(**arrays))
 
-    def _near_pairs(self, grains: Grains, grid: Grid, cell_start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        start = np.zeros(len(grains) + 1, np.int64)
-        shape = (grains.x, grains.y, grains.radius)
-        capacity = max(len(self.pairs.partner) * 5 // 4, 4 * grains.n_free) + 16
-        while True:
-            partner = np.empty(capacity, np.int32)
-            needed = cells.list_free_pairs(*shape, grains.n_free, self.skin, *grid, cell_start, start, partner)
-            if needed <= capacity:
-                break
-            capacity = needed
-        if grains.n_free == len(grains):
-            return start, partner[:needed].copy()
-        order, prescribed_start = cells.sort_by_cell(grains.x, grains.y, grains.n_free, len(grains), *grid)
-        partner = cells.list_prescribed_pairs(
-            *shape, grains.body, grains.n_free, self.skin, *grid, order, prescribed_start, start.copy(), partner, start
-        )
-        return start, partner
-
     def _rebuild_walls(self, grains: Grains, old_of: np.ndarray) -> None:
         old = self.walls
         grain, wall = cells.list_walls(
@@ -138,10 +145,11 @@ class ContactList:
             old_of, grains.n_free, old.grain, old.wall, _history(old), grain, wall, _history(self.walls)
         )
 
-    def _grid(self, grains: Grains) -> Grid:
+    def _grid(self, grains: Grains, largest_radius: float) -> Grid:
+        """Cells of the largest diameter plus the skin over the bounding box of all grains."""
         x_min, y_min = float(grains.x.min()), float(grains.y.min())
         width, height = float(grains.x.max()) - x_min, float(grains.y.max()) - y_min
-        size = 2.0 * float(grains.radius.max()) + self.skin
+        size = 2.0 * largest_radius + self.skin
         most = max(4 * len(grains), 64)
         while (width / size + 1.0) * (height / size + 1.0) > most:
             size *= 1.5
@@ -156,13 +164,11 @@ class ContactList:
         }
 
     def _pair_arrays(
-        self, start: np.ndarray, partner: np.ndarray, blocks: np.ndarray | None = None
+        self, start: np.ndarray, owner: np.ndarray, partner: np.ndarray, blocks: np.ndarray
     ) -> PairArrays:
-        if blocks is None:
-            blocks = np.zeros(2, np.int64)
         crossing_start, *incoming = cells.list_crossings(blocks, start, partner)
         return PairArrays(
-            start, partner, **self._memory(len(partner)),
+            start, owner, partner, **self._memory(len(partner)),
             crossing_start=crossing_start, crossing=np.zeros((int(crossing_start[-1]), 3)),
             incoming_grain=incoming[0], incoming_start=incoming[1], incoming=incoming[2], incoming_block=incoming[3],
         )  # fmt: skip
@@ -177,7 +183,7 @@ class ContactList:
             "px_listed": point[:, 0].copy(), "py_listed": point[:, 1].copy(),
         }
         return WallArrays(
-            **columns, force=np.zeros((1, len(walls), 2)), grain=np.zeros(0, np.int32), wall=np.zeros(0, np.int32),
+            **columns, force=np.zeros((1, len(walls), 2)), grain=np.zeros(0, np.uint32), wall=np.zeros(0, np.uint32),
             block=np.zeros(2, np.int64), **self._memory(0),
         )
 
@@ -190,13 +196,19 @@ class ContactList:
                 f"grain {number} has left the finite numbers: the run is unstable; use a smaller time step"
             )
 
-    @staticmethod
-    def _require_apart(grains: Grains, start: np.ndarray, partner: np.ndarray) -> None:
-        owner = np.repeat(np.arange(len(grains)), np.diff(start))
-        same = np.nonzero((grains.x[owner] == grains.x[partner]) & (grains.y[owner] == grains.y[partner]))[0]
+    def _require_apart(self, grains: Grains) -> None:
+        a, b = self.pairs.owner, self.pairs.partner
+        same = np.nonzero((grains.x[a] == grains.x[b]) & (grains.y[a] == grains.y[b]))[0]
         if len(same):
-            a, b = grains.number[owner[same[0]]], grains.number[partner[same[0]]]
-            raise ParticleError(f"grains {a} and {b} have the same centre: move one of them")
+            first, second = grains.number[a[same[0]]], grains.number[b[same[0]]]
+            raise ParticleError(f"grains {first} and {second} have the same centre: move one of them")
+
+
+def _levels(radius: np.ndarray) -> list[tuple[np.ndarray, float]]:
+    """Grains by size, finest first: members and the largest radius of each level, at most twice the smallest."""
+    level = np.floor(np.log2(radius / radius.min()) + 1e-12).astype(np.int64)
+    found = [np.nonzero(level == k)[0] for k in np.unique(level)]
+    return [(members, float(radius[members].max())) for members in found]
 
 
 def _history(listed: PairArrays | WallArrays) -> tuple[np.ndarray, ...]:

@@ -37,6 +37,8 @@ class Grains:
     radius: Floats
     mass: Floats
     inertia: Floats
+    inverse_mass: Floats
+    inverse_inertia: Floats
     roll_compliance: Floats
     x_listed: Floats
     y_listed: Floats
@@ -70,6 +72,7 @@ class Grains:
         grains.mass[:] = np.pi * grains.radius**2 * np.asarray(density, float)
         grains._check()
         grains.inertia[:] = 0.5 * grains.mass * grains.radius**2
+        grains.inverse_mass[:], grains.inverse_inertia[:] = 1.0 / grains.mass, 1.0 / grains.inertia
         grains.roll_compliance[:] = 1.0 / (grains.inertia + grains.mass * grains.radius**2)
         return grains
 

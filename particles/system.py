@@ -160,7 +160,7 @@ class ParticleSystem:
         g = self.grains
         return GrainArrays(
             g.x, g.y, g.theta, g.vx, g.vy, g.omega, g.fx, g.fy, g.torque, g.radius, g.mass, g.inertia,
-            g.roll_compliance, g.x_listed, g.y_listed, self.impulse, self.blocks,
+            g.inverse_mass, g.inverse_inertia, g.roll_compliance, g.x_listed, g.y_listed, self.impulse, self.blocks,
         )  # fmt: skip
 
     def _laws(self) -> tuple[Any, Any, Any]:
@@ -281,6 +281,11 @@ class ParticleSystem:
 
     def restore(self, saved: Mapping[str, NDArray[Any]]) -> None:
         """Go back to a state made by `state` of a system with the same grains and features."""
+        missing = self.state().keys() - saved.keys()
+        if missing:
+            raise ParticleError(
+                f"saved state lacks {sorted(missing)[0]}: it was made with other features or by another version; start anew"
+            )
         if len(saved["grains.x"]) != len(self.grains) or int(saved["grains.n_free"]) != self.grains.n_free:
             raise ParticleError(
                 f"saved state has {len(saved['grains.x'])} grains, this system has {len(self.grains)}: "

@@ -1,112 +1,105 @@
-"""Contact search: uniform cells, counted by columns, and the half list of near pairs (model 1.5).
+"""Contact search on a hierarchy of uniform cells, and the half list of near pairs (model 1.5).
 
-Free grains are stored in the order of their cells, columns first. A grain's partners with a
-higher number then stand in two runs of memory: the rest of its own column up to the next row,
-and three rows of the next column.
+Grains are sorted into levels by size, each with cells of at least its largest diameter plus the
+skin. A grain meets those of its own level in its cell and the following ones, and those of coarser
+levels in the nine cells around its centre: the cost per grain does not depend on the size ratio.
 """
 
 import numpy as np
 
-from particles.kernels.jit import kernel
+from particles.kernels.jit import inner_kernel, kernel
+
+
+@inner_kernel
+def cell_of(x, y, grid):
+    column = min(max(int((x - grid.x_min) / grid.size), 0), grid.columns - 1)
+    row = min(max(int((y - grid.y_min) / grid.size), 0), grid.rows - 1)
+    return column * grid.rows + row
 
 
 @kernel
-def cell_of(x, y, x_min, y_min, size, columns, rows):
-    column = min(max(int((x - x_min) / size), 0), columns - 1)
-    row = min(max(int((y - y_min) / size), 0), rows - 1)
-    return column * rows + row
-
-
-@kernel
-def sort_by_cell(x, y, first, last, x_min, y_min, size, columns, rows):
-    """Stable counting sort. Returns the order and the first place of each cell."""
-    cell_start = np.zeros(columns * rows + 1, np.int64)
-    cells = np.empty(last - first, np.int64)
-    for i in range(first, last):
-        cells[i - first] = cell_of(x[i], y[i], x_min, y_min, size, columns, rows)
-        cell_start[cells[i - first] + 1] += 1
-    for c in range(columns * rows):
+def sort_by_cell(x, y, members, grid):
+    """Stable counting sort of `members` by cell, columns first. Returns the order and the first place of each cell."""
+    cells = np.empty(members.shape[0], np.int64)
+    cell_start = np.zeros(grid.columns * grid.rows + 1, np.int64)
+    for k in range(members.shape[0]):
+        cells[k] = cell_of(x[members[k]], y[members[k]], grid)
+        cell_start[cells[k] + 1] += 1
+    for c in range(grid.columns * grid.rows):
         cell_start[c + 1] += cell_start[c]
     place = cell_start[:-1].copy()
-    order = np.empty(last - first, np.int64)
-    for i in range(first, last):
-        order[place[cells[i - first]]] = i
-        place[cells[i - first]] += 1
+    order = np.empty(members.shape[0], np.int64)
+    for k in range(members.shape[0]):
+        order[place[cells[k]]] = members[k]
+        place[cells[k]] += 1
     return order, cell_start
 
 
-@kernel
-def is_near(i, j, x, y, radius, skin):
+@inner_kernel
+def may_touch(i, j, x, y, radius, body, skin):
     dx, dy, reach = x[j] - x[i], y[j] - y[i], radius[i] + radius[j] + skin
-    return dx * dx + dy * dy < reach * reach
+    return dx * dx + dy * dy < reach * reach and (body[i] != body[j] or body[i] < 0)
 
 
 @kernel
-def list_free_pairs(x, y, radius, n_free, skin, x_min, y_min, size, columns, rows, cell_start, start, partner):
-    """Rows of near free pairs, partner above owner. Returns the slots needed, stored or not."""
-    count = 0
-    capacity = partner.shape[0]
-    for i in range(n_free):
-        start[i] = count
-        c = cell_of(x[i], y[i], x_min, y_min, size, columns, rows)
-        column, row = c // rows, c % rows
-        low, high = max(row - 1, 0), min(row + 1, rows - 1)
-        for j in range(i + 1, cell_start[column * rows + high + 1]):
-            if is_near(i, j, x, y, radius, skin):
-                if count < capacity:
-                    partner[count] = j
-                count += 1
-        if column + 1 < columns:
-            base = (column + 1) * rows
-            for j in range(cell_start[base + low], cell_start[base + high + 1]):
-                if is_near(i, j, x, y, radius, skin):
-                    if count < capacity:
-                        partner[count] = j
+def pairs_within(x, y, radius, body, skin, grid, order, cell_start, found, count):
+    """Near pairs of one level, written to `found` (capacity, 2) from `count` on. Returns the new count.
+
+    Sorted by columns, the following partners of a grain stand in two runs: the rest of its column
+    up to the next row, and three rows of the next column. Nothing is written beyond the capacity.
+    """
+    for a in range(order.shape[0]):
+        i = order[a]
+        c = cell_of(x[i], y[i], grid)
+        column, row = c // grid.rows, c % grid.rows
+        low, high = max(row - 1, 0), min(row + 1, grid.rows - 1)
+        begin, end = a + 1, cell_start[column * grid.rows + high + 1]
+        for run in range(2):
+            for b in range(begin, end):
+                if may_touch(i, order[b], x, y, radius, body, skin):
+                    if count < found.shape[0]:
+                        found[count, 0], found[count, 1] = min(i, order[b]), max(i, order[b])
                     count += 1
-    start[n_free] = count
+            if run == 0 and column + 1 < grid.columns:
+                begin = cell_start[(column + 1) * grid.rows + low]
+                end = cell_start[(column + 1) * grid.rows + high + 1]
+            else:
+                begin = end = 0
     return count
 
 
 @kernel
-def list_prescribed_pairs(
-    x, y, radius, body, n_free, skin, x_min, y_min, size, columns, rows, order, cell_start, free_row, partner, start
-):
-    """Merge the free rows with each grain's prescribed partners of other bodies.
-
-    `free_row, partner` are the free rows; returns the merged partners, `start` is rewritten.
-    """
-    n = x.shape[0]
-    merged = np.empty(partner.shape[0] + 16 + 8 * (n - n_free), np.int32)
-    count = 0
-    for i in range(n):
-        row_begin = count
-        if i < n_free:
-            for k in range(free_row[i], free_row[i + 1]):
-                if count == merged.shape[0]:
-                    merged = _grow(merged)
-                merged[count] = partner[k]
-                count += 1
-        c = cell_of(x[i], y[i], x_min, y_min, size, columns, rows)
-        column, row = c // rows, c % rows
-        low, high = max(row - 1, 0), min(row + 1, rows - 1)
-        for other in range(max(column - 1, 0), min(column + 2, columns)):
-            for a in range(cell_start[other * rows + low], cell_start[other * rows + high + 1]):
-                j = order[a]
-                if j > i and body[i] != body[j] and is_near(i, j, x, y, radius, skin):
-                    if count == merged.shape[0]:
-                        merged = _grow(merged)
-                    merged[count] = j
+def pairs_between(x, y, radius, body, skin, members, grid, order, cell_start, found, count):
+    """Near pairs of `members` of a finer level with a coarser one. As `pairs_within`."""
+    for a in range(members.shape[0]):
+        i = members[a]
+        c = cell_of(x[i], y[i], grid)
+        column, row = c // grid.rows, c % grid.rows
+        low, high = max(row - 1, 0), min(row + 1, grid.rows - 1)
+        for other in range(max(column - 1, 0), min(column + 2, grid.columns)):
+            for b in range(cell_start[other * grid.rows + low], cell_start[other * grid.rows + high + 1]):
+                if may_touch(i, order[b], x, y, radius, body, skin):
+                    if count < found.shape[0]:
+                        found[count, 0], found[count, 1] = min(i, order[b]), max(i, order[b])
                     count += 1
-        start[i] = row_begin
-    start[n] = count
-    return merged[:count].copy()
+    return count
 
 
 @kernel
-def _grow(array):
-    larger = np.empty(2 * array.shape[0], array.dtype)
-    larger[: array.shape[0]] = array
-    return larger
+def rows_of(found, n):
+    """Half list by rows of the lower index: first slot of each row, owner and partner of each slot."""
+    start = np.zeros(n + 1, np.int64)
+    for k in range(found.shape[0]):
+        start[found[k, 0] + 1] += 1
+    for i in range(n):
+        start[i + 1] += start[i]
+    place = start[:-1].copy()
+    owner, partner = np.empty(found.shape[0], np.uint32), np.empty(found.shape[0], np.uint32)
+    for k in range(found.shape[0]):
+        slot = place[found[k, 0]]
+        owner[slot], partner[slot] = found[k, 0], found[k, 1]
+        place[found[k, 0]] += 1
+    return start, owner, partner
 
 
 @kernel
@@ -115,7 +108,7 @@ def list_walls(x, y, radius, n_free, px, py, nx, ny, skin):
     count = 0
     for fill in range(2):
         if fill == 1:
-            grain, wall = np.empty(count, np.int32), np.empty(count, np.int32)
+            grain, wall = np.empty(count, np.uint32), np.empty(count, np.uint32)
         count = 0
         for i in range(n_free):
             for w in range(px.shape[0]):

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from particles.kernels.jit import kernel
 from particles.kernels.layout import NOTHING_LOST, WALL_WORK, Meeting, Memory
 from particles.kernels.touch import add_losses, touch
@@ -9,73 +11,73 @@ from particles.kernels.touch import add_losses, touch
 
 @kernel
 def clear_forces(b, grains):
-    for i in range(grains.block_start[b], grains.block_start[b + 1]):
-        grains.fx[i] = 0.0
-        grains.fy[i] = 0.0
-        grains.torque[i] = 0.0
+    first, last = grains.block_start[b], grains.block_start[b + 1]
+    grains.fx[first:last] = 0.0
+    grains.fy[first:last] = 0.0
+    grains.torque[first:last] = 0.0
 
 
 @kernel
 def pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt):
-    """Forces of the pairs that block `b` owns (model 1.1, 1.2; lever arms to mid-overlap)."""
-    first, last = grains.block_start[b], grains.block_start[b + 1]
+    """Forces of the pairs that block `b` owns (model 1.1, 1.2; lever arms to mid-overlap).
+
+    One flat loop with unsigned indices: signed ones are wrapped around at every access.
+    """
+    last = grains.block_start[b + 1]
     x, y, vx, vy, omega = grains.x, grains.y, grains.vx, grains.vy, grains.omega
     radius, compliance = grains.radius, grains.roll_compliance
     fx, fy, torque = grains.fx, grains.fy, grains.torque
-    start, partner, spring, moment = pairs.start, pairs.partner, pairs.spring, pairs.moment
-    crossing, cross = pairs.crossing, pairs.crossing_start[b]
+    owner, partner, spring, moment = pairs.owner, pairs.partner, pairs.spring, pairs.moment
+    crossing, cross = pairs.crossing, np.uint64(pairs.crossing_start[b])
     dash_n, dash_t, dash_r = pairs.dash_n, pairs.dash_t, pairs.dash_r
     lost = NOTHING_LOST
-    for i in range(first, last):
-        xi, yi, ri = x[i], y[i], radius[i]
-        fxi = fyi = ti = 0.0
-        for k in range(start[i], start[i + 1]):
-            j = partner[k]
-            dx, dy, reach = x[j] - xi, y[j] - yi, ri + radius[j]
-            d2 = dx * dx + dy * dy
-            touching = d2 < reach * reach
-            px = py = tj = 0.0
-            f_old = m_old = d_n = d_t = d_r = 0.0
+    for k in range(np.uint64(pairs.start[grains.block_start[b]]), np.uint64(pairs.start[last])):
+        i, j = owner[k], partner[k]
+        dx, dy, reach = x[j] - x[i], y[j] - y[i], radius[i] + radius[j]
+        d2 = dx * dx + dy * dy
+        f_old = m_old = d_n = d_t = d_r = 0.0
+        if tangential is not None:
+            f_old, m_old = spring[k], moment[k]
+        if ledger is not None:
+            d_n, d_t, d_r = dash_n[k], dash_t[k], dash_r[k]
+        touching = d2 < reach * reach
+        if not (touching or f_old != 0.0 or m_old != 0.0 or d_n != 0.0):
+            if j >= last:
+                crossing[cross, 0] = crossing[cross, 1] = crossing[cross, 2] = 0.0
+                cross += np.uint64(1)
+            continue
+        d = math.sqrt(d2)
+        inverse = 1.0 / (d * reach)
+        nx, ny, delta = dx * (inverse * reach), dy * (inverse * reach), reach - d
+        ux, uy = vx[j] - vx[i], vy[j] - vy[i]
+        arm_i = arm_j = v_t = omega_r = 0.0
+        if tangential is not None:
+            arm_i, arm_j = radius[i] - 0.5 * delta, radius[j] - 0.5 * delta
+            v_t = uy * nx - ux * ny - (arm_i * omega[i] + arm_j * omega[j])
+            omega_r = omega[i] - omega[j]
+        r_r = radius[i] * radius[j] * (inverse * d)
+        meeting = Meeting(delta, ux * nx + uy * ny, v_t, omega_r, r_r, compliance[i] + compliance[j])
+        memory = Memory(f_old, m_old, d_n, d_t, d_r)
+        response, lost = touch(touching, normal, tangential, rolling, ledger, meeting, memory, lost, dt)
+        if tangential is not None:
+            spring[k], moment[k] = response.spring, response.moment
+        if ledger is not None:
+            dash_n[k], dash_t[k], dash_r[k] = response.dash_n, response.dash_t, response.dash_r
+        px = -response.f_n * nx - response.f_t * ny
+        py = -response.f_n * ny + response.f_t * nx
+        tj = arm_j * response.f_t - response.m_t
+        fx[i] += px
+        fy[i] += py
+        if tangential is not None:
+            torque[i] += arm_i * response.f_t + response.m_t
+        if j < last:
+            fx[j] -= px
+            fy[j] -= py
             if tangential is not None:
-                f_old, m_old = spring[k], moment[k]
-            if ledger is not None:
-                d_n, d_t, d_r = dash_n[k], dash_t[k], dash_r[k]
-            if touching or f_old != 0.0 or m_old != 0.0 or d_n != 0.0:
-                d = math.sqrt(d2)
-                nx, ny, delta = dx / d, dy / d, reach - d
-                ux, uy = vx[j] - vx[i], vy[j] - vy[i]
-                arm_i = arm_j = v_t = omega_r = 0.0
-                if tangential is not None:
-                    arm_i, arm_j = ri - 0.5 * delta, radius[j] - 0.5 * delta
-                    v_t = uy * nx - ux * ny - (arm_i * omega[i] + arm_j * omega[j])
-                    omega_r = omega[i] - omega[j]
-                meeting = Meeting(
-                    delta, ux * nx + uy * ny, v_t, omega_r, ri * radius[j] / reach, compliance[i] + compliance[j]
-                )
-                memory = Memory(f_old, m_old, d_n, d_t, d_r)
-                response, lost = touch(touching, normal, tangential, rolling, ledger, meeting, memory, lost, dt)
-                if tangential is not None:
-                    spring[k], moment[k] = response.spring, response.moment
-                if ledger is not None:
-                    dash_n[k], dash_t[k], dash_r[k] = response.dash_n, response.dash_t, response.dash_r
-                px = -response.f_n * nx - response.f_t * ny
-                py = -response.f_n * ny + response.f_t * nx
-                ti += arm_i * response.f_t + response.m_t
-                tj = arm_j * response.f_t - response.m_t
-            fxi += px
-            fyi += py
-            if j < last:
-                fx[j] -= px
-                fy[j] -= py
                 torque[j] += tj
-            else:
-                crossing[cross, 0] = -px
-                crossing[cross, 1] = -py
-                crossing[cross, 2] = tj
-                cross += 1
-        fx[i] += fxi
-        fy[i] += fyi
-        torque[i] += ti
+        else:
+            crossing[cross, 0], crossing[cross, 1], crossing[cross, 2] = -px, -py, tj
+            cross += np.uint64(1)
     add_losses(b, tangential, ledger, lost, dt)
 
 
@@ -91,7 +93,7 @@ def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
     wall_work(b, walls, ledger, dt)
     for w in range(px.shape[0]):
         force[b, w, 0] = force[b, w, 1] = 0.0
-    for k in range(walls.block[b], walls.block[b + 1]):
+    for k in range(np.uint64(walls.block[b]), np.uint64(walls.block[b + 1])):
         i, w = walls.grain[k], walls.wall[k]
         nx, ny, ri = -wnx[w], -wny[w], radius[i]
         delta = ri + (x[i] - px[w]) * nx + (y[i] - py[w]) * ny

@@ -19,6 +19,16 @@ GLOBAL_DAMPING, DAMPING_AHEAD, WALL_WORK = 5, 6, 7
 LEDGER_COLUMNS = 8
 
 
+class Grid(NamedTuple):
+    """Uniform square cells."""
+
+    x_min: float
+    y_min: float
+    size: float
+    columns: int
+    rows: int
+
+
 class GrainArrays(NamedTuple):
     """State of all grains; n of them, the first `n_free` integrated."""
 
@@ -34,6 +44,8 @@ class GrainArrays(NamedTuple):
     radius: Array
     mass: Array
     inertia: Array
+    inverse_mass: Array  # 0 for a prescribed grain
+    inverse_inertia: Array
     roll_compliance: Array  # (n,) 1/(I + m r^2), 0 for a prescribed grain
     x_listed: Array  # (n,) position when the contact list was made
     y_listed: Array
@@ -45,7 +57,8 @@ class PairArrays(NamedTuple):
     """Half list of near pairs, by rows of the lower index, and their history."""
 
     start: Array  # (n + 1,) first slot of each row
-    partner: Array  # (n_slots,) int32
+    owner: Array  # (n_slots,) uint32, the row's grain
+    partner: Array  # (n_slots,) uint32
     spring: Array  # (n_slots,) tangential spring f [N/m]
     moment: Array  # (n_slots,) rolling spring M on the lower index [N]
     dash_n: Array  # (n_slots,) dashpot forces of the step before, for the ledger
@@ -71,8 +84,8 @@ class WallArrays(NamedTuple):
     px_listed: Array  # (n_walls,) the point when the near grains were listed
     py_listed: Array
     force: Array  # (n_blocks, n_walls, 2) force of the grains on the wall
-    grain: Array  # (n_near,) int32
-    wall: Array  # (n_near,) int32
+    grain: Array  # (n_near,) uint32
+    wall: Array  # (n_near,) uint32
     block: Array  # (n_blocks + 1,) first near pair of each block
     spring: Array  # (n_near,)
     moment: Array  # (n_near,)

@@ -1,5 +1,7 @@
 """Leapfrog (model 1.4): kick by the forces at n, drift to n + 1."""
 
+import numpy as np
+
 from particles.kernels.jit import kernel
 from particles.kernels.layout import DAMPING_AHEAD, GLOBAL_DAMPING
 
@@ -10,13 +12,13 @@ def drift(b, grains, spins, reach2, dt):
     x, y, vx, vy = grains.x, grains.y, grains.vx, grains.vy
     x_listed, y_listed, theta, omega = grains.x_listed, grains.y_listed, grains.theta, grains.omega
     stale = 0
-    for i in range(grains.block_start[b], grains.block_start[b + 1]):
+    for i in range(np.uint64(grains.block_start[b]), np.uint64(grains.block_start[b + 1])):
         x[i] += dt * vx[i]
         y[i] += dt * vy[i]
         dx, dy = x[i] - x_listed[i], y[i] - y_listed[i]
         stale |= not (dx * dx + dy * dy <= reach2)
     if spins:
-        for i in range(grains.block_start[b], grains.block_start[b + 1]):
+        for i in range(np.uint64(grains.block_start[b]), np.uint64(grains.block_start[b + 1])):
             theta[i] += dt * omega[i]
     return stale
 
@@ -45,13 +47,14 @@ def kick(b, grains, gravity_x, gravity_y, tangential, damping, ledger, dt):
     """Velocities of the free grains of block `b` from n - 1/2 to n + 1/2."""
     vx, vy, omega = grains.vx, grains.vy, grains.omega
     fx, fy, torque, mass, inertia = grains.fx, grains.fy, grains.torque, grains.mass, grains.inertia
+    inverse_mass, inverse_inertia = grains.inverse_mass, grains.inverse_inertia
     first, last = grains.block_start[b], grains.block_start[b + 1]
     alpha_t = alpha_r = now = ahead = 0.0
     if damping is not None:
         alpha_t, alpha_r = damping.alpha_t, damping.alpha_r
-    for i in range(first, last):
-        ax = fx[i] / mass[i] + gravity_x
-        ay = fy[i] / mass[i] + gravity_y
+    for i in range(np.uint64(first), np.uint64(last)):
+        ax = fx[i] * inverse_mass[i] + gravity_x
+        ay = fy[i] * inverse_mass[i] + gravity_y
         if damping is not None:
             ax -= alpha_t * vx[i]
             ay -= alpha_t * vy[i]
@@ -65,8 +68,8 @@ def kick(b, grains, gravity_x, gravity_y, tangential, damping, ledger, dt):
         ledger.loss[b, DAMPING_AHEAD] = 0.5 * dt * alpha_t * ahead
     if tangential is not None:
         now = ahead = 0.0
-        for i in range(first, last):
-            a = torque[i] / inertia[i]
+        for i in range(np.uint64(first), np.uint64(last)):
+            a = torque[i] * inverse_inertia[i]
             if damping is not None:
                 a -= alpha_r * omega[i]
             w = omega[i] + dt * a
