@@ -78,6 +78,8 @@ def _advance(
     falls to the thread that gets one block more than the others.
     """
     n_blocks = grains.block_start.shape[0] - 1
+    if grains.block_start[n_blocks] == grains.block_start[n_blocks - 1]:
+        n_blocks -= 1  # nothing is prescribed
     last = n_blocks - 1
     gravity_x, gravity_y = gravity[0], gravity[1]
     stale = np.zeros(n_blocks, np.int64)

@@ -11,10 +11,11 @@ from particles.kernels.touch import add_losses, touch
 
 @kernel
 def clear_forces(b, grains):
-    first, last = grains.block_start[b], grains.block_start[b + 1]
-    grains.fx[first:last] = 0.0
-    grains.fy[first:last] = 0.0
-    grains.torque[first:last] = 0.0
+    fx, fy, torque = grains.fx, grains.fy, grains.torque
+    for i in range(np.uint64(grains.block_start[b]), np.uint64(grains.block_start[b + 1])):
+        fx[i] = 0.0
+        fy[i] = 0.0
+        torque[i] = 0.0
 
 
 @kernel
