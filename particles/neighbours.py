@@ -156,10 +156,9 @@ class ContactList:
         return Grid(x_min, y_min, size, int(width / size) + 1, int(height / size) + 1)
 
     def _memory(self, slots: int) -> dict[str, np.ndarray]:
-        kept = slots if self.contact.spins else 0
         return {
-            "spring": np.zeros(kept),
-            "moment": np.zeros(kept),
+            "spring": np.zeros(slots if self.contact.spins else 0),
+            "moment": np.zeros(slots if self.contact.rolls else 0),
             **{name: np.zeros(slots if self.ledger else 0) for name in ("dash_n", "dash_t", "dash_r")},
         }
 

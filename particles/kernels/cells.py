@@ -138,6 +138,7 @@ def carry_pairs(old_of, old_start, old_partner, old_history, start, partner, his
                 if old_partner[slot] == b:
                     if spring.shape[0]:
                         spring[k] = old_spring[slot]
+                    if moment.shape[0]:
                         moment[k] = sign * old_moment[slot]
                     if dash_n.shape[0]:
                         dash_n[k] = old_dash_n[slot]
@@ -161,6 +162,7 @@ def carry_walls(old_of, n_free, old_grain, old_wall, old_history, grain, wall, h
             if old_wall[slot] == wall[k]:
                 if spring.shape[0]:
                     spring[k] = old_spring[slot]
+                if moment.shape[0]:
                     moment[k] = old_moment[slot]
                 if dash_n.shape[0]:
                     dash_n[k] = old_dash_n[slot]

@@ -37,7 +37,9 @@ def look_at_contacts(grains, pairs, walls, normal, tangential, rolling, overlap,
             if delta > 0.0:
                 f = m = 0.0
                 if tangential is not None:
-                    f, m = pairs.spring[k], pairs.moment[k]
+                    f = pairs.spring[k]
+                if rolling is not None:
+                    m = pairs.moment[k]
                 r_r = grains.radius[i] * grains.radius[j] / reach
                 e_n, e_t, e_r = stored(normal, tangential, rolling, delta, f, m, r_r)
                 energy_n, energy_t, energy_r = energy_n + e_n, energy_t + e_t, energy_r + e_r
@@ -56,7 +58,9 @@ def look_at_contacts(grains, pairs, walls, normal, tangential, rolling, overlap,
         if delta > 0.0:
             f = m = 0.0
             if tangential is not None:
-                f, m = walls.spring[k], walls.moment[k]
+                f = walls.spring[k]
+            if rolling is not None:
+                m = walls.moment[k]
             e_n, e_t, e_r = stored(normal, tangential, rolling, delta, f, m, grains.radius[i])
             energy_n, energy_t, energy_r = energy_n + e_n, energy_t + e_t, energy_r + e_r
             overlap[i] += delta

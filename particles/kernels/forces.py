@@ -38,7 +38,9 @@ def pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt):
         d2 = dx * dx + dy * dy
         f_old = m_old = d_n = d_t = d_r = 0.0
         if tangential is not None:
-            f_old, m_old = spring[k], moment[k]
+            f_old = spring[k]
+        if rolling is not None:
+            m_old = moment[k]
         if ledger is not None:
             d_n, d_t, d_r = dash_n[k], dash_t[k], dash_r[k]
         touching = d2 < reach * reach
@@ -48,20 +50,22 @@ def pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt):
                 cross += np.uint64(1)
             continue
         d = math.sqrt(d2)
-        inverse = 1.0 / (d * reach)
-        nx, ny, delta = dx * (inverse * reach), dy * (inverse * reach), reach - d
+        inverse = 1.0 / d
+        nx, ny, delta = dx * inverse, dy * inverse, reach - d
         ux, uy = vx[j] - vx[i], vy[j] - vy[i]
         arm_i = arm_j = v_t = omega_r = 0.0
         if tangential is not None:
             arm_i, arm_j = radius[i] - 0.5 * delta, radius[j] - 0.5 * delta
             v_t = uy * nx - ux * ny - (arm_i * omega[i] + arm_j * omega[j])
             omega_r = omega[i] - omega[j]
-        r_r = radius[i] * radius[j] * (inverse * d)
+        r_r = radius[i] * radius[j] / reach
         meeting = Meeting(delta, ux * nx + uy * ny, v_t, omega_r, r_r, compliance[i] + compliance[j])
         memory = Memory(f_old, m_old, d_n, d_t, d_r)
         response, lost = touch(touching, normal, tangential, rolling, ledger, meeting, memory, lost, dt)
         if tangential is not None:
-            spring[k], moment[k] = response.spring, response.moment
+            spring[k] = response.spring
+        if rolling is not None:
+            moment[k] = response.moment
         if ledger is not None:
             dash_n[k], dash_t[k], dash_r[k] = response.dash_n, response.dash_t, response.dash_r
         px = -response.f_n * nx - response.f_t * ny
@@ -101,7 +105,9 @@ def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
         touching = delta > 0.0
         f_old = m_old = d_n = d_t = d_r = 0.0
         if tangential is not None:
-            f_old, m_old = spring[k], moment[k]
+            f_old = spring[k]
+        if rolling is not None:
+            m_old = moment[k]
         if ledger is not None:
             d_n, d_t, d_r = dash_n[k], dash_t[k], dash_r[k]
         if not (touching or f_old != 0.0 or m_old != 0.0 or d_n != 0.0):
@@ -115,7 +121,9 @@ def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
         memory = Memory(f_old, m_old, d_n, d_t, d_r)
         response, lost = touch(touching, normal, tangential, rolling, ledger, meeting, memory, lost, dt)
         if tangential is not None:
-            spring[k], moment[k] = response.spring, response.moment
+            spring[k] = response.spring
+        if rolling is not None:
+            moment[k] = response.moment
         if ledger is not None:
             dash_n[k], dash_t[k], dash_r[k] = response.dash_n, response.dash_t, response.dash_r
         fx = -response.f_n * nx - response.f_t * ny
