@@ -24,12 +24,11 @@ def before(built: Built) -> list[str]:
         )
     if scene.interface is not None and scene.interface.exchange == "lagged" and built.stiffness_ratio > 0.0:
         said.append('interface.exchange = "lagged" feeds energy into the interface at any step; "predicted" does not')
-    rayleigh = scene.structure.rayleigh if scene.structure is not None else None
-    if rayleigh is not None and rayleigh.stiffness_factor > 0.0:
-        limit = 2.0 / rayleigh.stiffness_factor
-        said.append(
-            f"Rayleigh's stiffness_factor over-damps every mode above {limit:.4g} rad/s ({limit / (2 * math.pi):.4g} Hz)"
-        )
+    damping = getattr(built.model.structure, "damping", None)  # an elastic structure alone may have it
+    if damping is not None and damping.overdamped_above < math.inf:
+        limit = damping.overdamped_above
+        hertz = limit / (2 * math.pi)
+        said.append(f"Rayleigh's stiffness_factor over-damps every mode above {limit:.4g} rad/s ({hertz:.4g} Hz)")
     return said
 
 
@@ -38,9 +37,8 @@ def after(built: Built, seen: Observation, largest_strain: float) -> list[str]:
     said = []
     if built.scene.structure is not None and built.scene.structure.kind == "elastic":
         if largest_strain > LARGE_STRAIN:
-            said.append(f"largest strain {largest_strain:.3g} leaves the small-strain theory: take the stresses as a guide")
-        if abs(seen.numbers["rotation"]) > LARGE_ROTATION:
-            said.append(
-                f"the structure has turned by {seen.numbers['rotation']:.3g} rad, which the linear theory does not follow"
-            )
+            said.append(f"largest strain {largest_strain:.3g} leaves the small-strain theory: distrust the stresses")
+        turn = seen.numbers["rotation"]
+        if abs(turn) > LARGE_ROTATION:
+            said.append(f"the structure has turned by {turn:.3g} rad, which the linear theory does not follow")
     return said

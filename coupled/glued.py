@@ -83,7 +83,6 @@ class GluedGrains:
                 "glued grains would overlap; take a smaller diameter or fewer per facet"
             )
         self.reference = self.operator @ polyline.points
-        self.facet_of = first
 
     def __len__(self) -> int:
         return len(self.reference)

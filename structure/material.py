@@ -46,11 +46,6 @@ class PlaneStrain:
         e, nu = self.youngs_modulus, self.poissons_ratio
         return e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu))
 
-    @property
-    def plane_modulus(self) -> float:
-        """``E/(1-nu^2)`` [Pa]: what bends a beam in plane strain."""
-        return self.youngs_modulus / (1 - self.poissons_ratio**2)
-
     def stress(self, strain: NDArray[np.float64]) -> NDArray[np.float64]:
         """Stress [Pa] (..., 4) as xx, yy, xy, zz of the strain (..., 3) as xx, yy, xy (tensor)."""
         lam, mu = self.lame

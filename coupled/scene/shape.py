@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from coupled.scene.types import Count, Number, Positive, Table
+from coupled.scene.types import Count, Positive, Table
 
 LOADED_ARC = math.radians(120.0)
 

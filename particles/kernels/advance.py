@@ -96,9 +96,8 @@ def _advance(
             stale[last - q] = block_motion(
                 last - q, grains, pairs, gravity_x, gravity_y, tangential, damping, ledger, reach2, drifts, dt
             )
-        if drifts:
-            if move_walls(walls, reach2, dt) or stale.any():
-                return step + 1, 1
+        if drifts and (move_walls(walls, reach2, dt) or stale.any()):
+            return step + 1, 1
     return steps, 0
 
 
