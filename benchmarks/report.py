@@ -3,13 +3,15 @@
 import json
 import os
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib.metadata import version
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rich.console import Console
 from rich.table import Table
+
+Rate = dict[str, object]
 
 QUIET = 0.7  # load average above which times are not to be trusted
 LOAD_BEFORE = os.getloadavg()[0]
@@ -40,6 +42,15 @@ GOALS = {
     "microseconds_per_step_25_discs": Goal("us", 3.0, 1.0),
 }
 
+FURTHER = {
+    "rebuild_share_settled": "%",
+    "rebuild_share_falling": "%",
+    "rebuild_share_sheared": "%",
+    "rebuild_share_shaken": "%",
+    "first_start_seconds": "s",
+    "peak_memory_1e6_discs": "MiB",
+}
+
 
 def machine() -> dict[str, object]:
     """What the numbers were taken on."""
@@ -66,33 +77,59 @@ def entry(name: str, value: float | None) -> dict[str, object]:
     }  # fmt: skip
 
 
-def write(values: Mapping[str, float | None], **more: object) -> None:
-    """Write all rows in the order of the goals; what was not measured now keeps its last value."""
-    before = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
+def _joined(before: Iterable[Rate], now: Iterable[Rate]) -> list[Rate]:
+    """Rates of one file: a run measured now takes the place of the same run before."""
+    return list({(rate["what"], rate["discs"], rate["threads"]): rate for rate in [*before, *now]}.values())
+
+
+def write(
+    values: Mapping[str, float | None], rates: Iterable[Rate] = (), *, anew: bool = False, **more: object
+) -> None:
+    """Write all rows in the order of the goals; what was not measured now keeps its last value.
+
+    `anew` forgets the rates of runs before: for a run of all groups.
+    """
+    before = read() if RESULTS.exists() else {}
     content: dict[str, object] = {
         name: entry(name, values.get(name, before.get(name, {}).get("value"))) for name in GOALS
     }
-    content |= {name: before[name] for name in before if name not in GOALS}
+    last = before.get("further", {})
+    content["further"] = {
+        name: {"value": values.get(name, last.get(name, {}).get("value")), "unit": unit}
+        for name, unit in FURTHER.items()
+    }
+    content["rates"] = _joined([] if anew else before.get("rates", []), rates)
+    content |= {name: before[name] for name in before if name not in content}
     content |= more | {"machine": machine(), "versions": versions()}
     RESULTS.parent.mkdir(exist_ok=True)
     RESULTS.write_text(json.dumps(content, indent=2) + "\n")
 
 
+def read() -> dict[str, Any]:
+    """What the file holds."""
+    content: dict[str, Any] = json.loads(RESULTS.read_text())
+    return content
+
+
+def _shown(value: float | None) -> str:
+    return "not measured" if value is None else f"{value:.3g}"
+
+
 def show() -> None:
     """Print what the file holds."""
-    content = json.loads(RESULTS.read_text())
+    content = read()
     table = Table(title="{processor}, {cores} cores".format(**content["machine"]))
     for column, side in (("what", "left"), ("value", "right"), ("unit", "left"), ("goal", "right"), ("aim", "right")):
         table.add_column(column, justify=side)  # type: ignore[arg-type]
     for name in GOALS:
         row = content[name]
         colour = {True: "green", False: "red", None: "dim"}[row["met"]]
-        value = "not measured" if row["value"] is None else f"{row['value']:.3g}"
-        table.add_row(
-            name, f"[{colour}]{value}[/]", row["unit"], f"{row['sense']} {row['goal']:g}", f"{row['aim']:g}"
-        )
+        value = f"[{colour}]{_shown(row['value'])}[/]"
+        table.add_row(name, value, row["unit"], f"{row['sense']} {row['goal']:g}", f"{row['aim']:g}")
+    for name, row in content.get("further", {}).items():
+        table.add_row(name, _shown(row["value"]), row["unit"], "", "")
     for rate in content.get("rates", []):
-        name = f"{rate['what']}, {rate['discs']} discs, {rate['threads']} threads"
+        name = f"{rate['what']}, {rate['discs']} discs, {rate['threads']} thread{'s' * (rate['threads'] > 1)}"
         table.add_row(name, f"{rate['particle_steps_per_second']:.3g}", "1/s", "", "")
     for name, rate in content.get("peers", {}).get("particle_steps_per_second", {}).items():
         table.add_row(name, f"{rate:.3g}", "1/s", "", "")

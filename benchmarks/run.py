@@ -1,13 +1,16 @@
 """`make bench`: measure the speed of the particles, print one table, write results/latest.json.
 
 Only ratios taken in one run on one machine count. Rows that need another code are measured if
-`make bench-peers` has installed it, and stay empty otherwise.
+`make bench-peers` has installed it, and stay empty otherwise. A run of some groups leaves the rest
+of the file as it is.
 """
 
 import argparse
 
+import figure
 import measures
 import peers
+import processes
 import report
 from rich.console import Console
 
@@ -20,7 +23,7 @@ def main() -> None:
         "features": lambda: measures.features(rates),
         "phases": lambda: measures.phases(rates),
         "ratio": lambda: measures.size_ratio(rates),
-        "start": measures.second_start,
+        "start": processes.starts,
         "few": measures.few_discs,
     }
     parser = argparse.ArgumentParser(description=__doc__)
@@ -36,13 +39,16 @@ def main() -> None:
             values |= groups[name]()
         console.print(f"{name}: done")
     complete = len(chosen) == len(groups)
-    more: dict[str, object] = {"rates": rates.rows} if complete else {}
+    more: dict[str, object] = {}
     if complete and peers.installed():
         with console.status("measuring LAMMPS"):
             ratios, more["peers"] = peers.measure()
         values |= ratios
-    report.write(values, **more)
+    report.write(values, rates.rows, anew=complete, **more)
     report.show()
+    peers.mention_liggghts()
+    if "sizes" in chosen:
+        console.print(f"drawn: {figure.draw(report.read())}")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 import statistics
 import time
 from collections.abc import Callable, Mapping
+from unittest import mock
 
 from particles import ParticleSystem
 
@@ -19,6 +20,21 @@ def seconds(system: ParticleSystem, steps: int) -> float:
 def per_particle_step(system: ParticleSystem, steps: int) -> Task:
     """A task that takes `steps` steps and returns the time of one step of one disc [s]."""
     return lambda: seconds(system, steps) / (steps * len(system.grains))
+
+
+def rebuild_share(system: ParticleSystem, steps: int) -> float:
+    """Share of the wall time of `steps` steps that goes into new contact lists [%]."""
+    spent, rebuild = 0.0, system._rebuild
+
+    def timed() -> None:
+        nonlocal spent
+        begin = time.perf_counter()
+        rebuild()
+        spent += time.perf_counter() - begin
+
+    with mock.patch.object(system, "_rebuild", timed):
+        whole = seconds(system, steps)
+    return 100.0 * spent / whole
 
 
 def interleaved(tasks: Mapping[str, Task], rounds: int) -> dict[str, float]:
