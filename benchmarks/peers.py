@@ -99,9 +99,7 @@ class Lammps:
 
 def loaded(saved: beds.State, contact: ContactModel) -> ParticleSystem:
     """Our code from the same positions, its springs loaded under the same drag."""
-    grains = Grains.discs(
-        np.column_stack([saved["grains.x"], saved["grains.y"]]), saved["grains.radius"], beds.DENSITY
-    )
+    grains = Grains.discs(np.column_stack([saved["grains.x"], saved["grains.y"]]), saved["grains.radius"], beds.DENSITY)
     walls = box(beds.WIDTH, beds.HEIGHT)
     options = {"time_step": beds.TIME_STEP, "walls": walls, "gravity": beds.GRAVITY, "ledger": False}
     system = ParticleSystem(grains, contact, damping=GlobalDamping(translational=DRAG), **options)

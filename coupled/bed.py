@@ -24,6 +24,4 @@ def bed_folder(scene: Scene, runs: Path) -> Path:
 def settled_state(folder: Path) -> dict[str, Any]:
     """Grains and contacts of a finished bed."""
     saved, _ = checkpoint.load(folder / checkpoint.NAME)
-    return {
-        name.removeprefix("particles."): array for name, array in saved.items() if name.startswith("particles.")
-    }
+    return {name.removeprefix("particles."): array for name, array in saved.items() if name.startswith("particles.")}

@@ -129,9 +129,7 @@ def _recipe_numbers(scene: Scene) -> dict[str, float]:
         "normal_stiffness": stiffness,
         "normal_damping": recipe.damping_from_restitution(effective_mass=mass / 2, stiffness=stiffness, **options),
         "tangential_stiffness": tangential,
-        "tangential_damping": recipe.damping_from_restitution(
-            effective_mass=mass / 2, stiffness=tangential, **options
-        ),
+        "tangential_damping": recipe.damping_from_restitution(effective_mass=mass / 2, stiffness=tangential, **options),
     }
 
 
@@ -217,9 +215,7 @@ def _structure(scene: Scene, mesh: meshes.StructureMesh) -> Structure:
         time_step=step,
         damping=None
         if table.rayleigh is None
-        else fem.Rayleigh(
-            mass_factor=table.rayleigh.mass_factor, stiffness_factor=table.rayleigh.stiffness_factor
-        ),
+        else fem.Rayleigh(mass_factor=table.rayleigh.mass_factor, stiffness_factor=table.rayleigh.stiffness_factor),
         scheme=fem.Newmark(beta=table.newmark.beta, gamma=table.newmark.gamma),
         loads=loads,
     )
@@ -297,9 +293,7 @@ def _stiffness_ratio(scene: Scene, model: Model, contact: dem.ContactModel | Non
     if model.glued is None:
         return 0.0
     normal = contact.normal
-    ratio = model.glued.stiffness_ratio(
-        normal.stiffness, normal.damping, model.window, model.structure.acceleration_by
-    )
+    ratio = model.glued.stiffness_ratio(normal.stiffness, normal.damping, model.window, model.structure.acceleration_by)
     limit = scene.interface.largest_stiffness_ratio or stable_ratio(scene)
     if ratio > limit:
         raise LeitoError(

@@ -81,7 +81,9 @@ def _grain_rows(built: Built) -> list[Row]:
     n_free, n = system.grains.n_free, len(system.grains)
     rows = [("grains", "free, prescribed", f"{n_free}, {n - n_free}")]
     law = built.contact
-    rows.append(("grains", "normal stiffness, dashpot", f"{law.normal.stiffness:.4g} N/m, {law.normal.damping:.4g} N s/m"))
+    rows.append(
+        ("grains", "normal stiffness, dashpot", f"{law.normal.stiffness:.4g} N/m, {law.normal.damping:.4g} N s/m")
+    )
     if n_free:
         bound = source_bound(system.grains, law)
         single = source_bound(system.grains, law, factor=2.0)
@@ -128,7 +130,9 @@ def _cost_rows(scene: Scene, built: Built, factor: float) -> list[Row]:
         ("cost", "memory of the state", f"{_state_bytes(model) / 1e6:.1f} MB"),
     ]
     if scene.bed is not None:
-        rows.append(("cost", "and, once, to settle its bed", _spoken(per_step * scene.bed.time.duration / scene.bed.time.step)))
+        rows.append(
+            ("cost", "and, once, to settle its bed", _spoken(per_step * scene.bed.time.duration / scene.bed.time.step))
+        )
     return rows
 
 

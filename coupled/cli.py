@@ -33,9 +33,7 @@ _ROOM_ERRORS = {
     ("particles", "ParticleError"),
 }
 
-SceneArgument = Annotated[
-    str, typer.Argument(help="Scene file, or the name of a scene that ships.", metavar="SCENE")
-]
+SceneArgument = Annotated[str, typer.Argument(help="Scene file, or the name of a scene that ships.", metavar="SCENE")]
 SetOption = Annotated[
     Optional[list[str]],
     typer.Option("--set", metavar="KEY=VALUE", help="Override one key, e.g. time.duration=1.0."),
@@ -96,13 +94,9 @@ def run(
     scene: SceneArgument,
     out: Annotated[Optional[Path], typer.Option(help="Folder of the run.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint.")] = False,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace what the folder holds.")
-    ] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what the folder holds.")] = False,
     overrides: SetOption = None,
-    threads: Annotated[
-        Optional[int], typer.Option(min=1, help="Threads for the grains; all cores by default.")
-    ] = None,
+    threads: Annotated[Optional[int], typer.Option(min=1, help="Threads for the grains; all cores by default.")] = None,
     progress: Annotated[bool, typer.Option(help="Show a progress bar.")] = True,
 ) -> None:
     """Run a scene and write its results."""

@@ -136,7 +136,9 @@ def _draw_grains(
     discs.set_array(1e6 * overlap[order])
     discs.set_clim(0.0, max(1e6 * top, 1e-12))
     axes.add_collection(discs)
-    figure.colorbar(discs, ax=axes, label="summed overlap [um]", orientation="horizontal", shrink=0.6, aspect=40, extend="max")
+    figure.colorbar(
+        discs, ax=axes, label="summed overlap [um]", orientation="horizontal", shrink=0.6, aspect=40, extend="max"
+    )
 
 
 def _draw_structure(figure: Figure, axes: Axes, places: np.ndarray, frame: dict[str, np.ndarray]) -> None:

@@ -33,7 +33,8 @@ class RunProgress:
         console = Console(stderr=True)
         if self.wanted and console.is_terminal:
             columns = (
-                TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %  {task.fields[note]}"),
+                TextColumn("{task.description}"), BarColumn(),
+                TextColumn("{task.percentage:3.0f} %  {task.fields[note]}"),
                 TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn(),
             )  # fmt: skip
             self._bar = Progress(*columns, console=console)

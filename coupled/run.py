@@ -136,9 +136,12 @@ class Run:
         """Advance to the end, or to Ctrl-C."""
         self._say(cautions.before(self.built))
         self._write_provenance()
-        with _Stop() as stop, RunProgress(
-            self.scene.title, self.last, self.model.steps_done, wanted=progress and self.comm.rank == 0
-        ) as bar:
+        with (
+            _Stop() as stop,
+            RunProgress(
+                self.scene.title, self.last, self.model.steps_done, wanted=progress and self.comm.rank == 0
+            ) as bar,
+        ):
             seen = observe(self.model, self.start)
             self._on_root_alone(lambda: watch(self.model, seen))
             if not self.resumed:

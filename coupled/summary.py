@@ -85,7 +85,10 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
             f"{100 * summary['stable_dt_ratio']:.0f} % of the source's bound"
         )
     if summary["stiffness_ratio_r"]:
-        lines.append(f"  stiffness ratio r        {summary['stiffness_ratio_r']:12.3g}       stable up to {summary['stable_ratio']:g} on fixed partners")
+        lines.append(
+            f"  stiffness ratio r        {summary['stiffness_ratio_r']:12.3g}       stable up to "
+            f"{summary['stable_ratio']:g} on fixed partners"
+        )
     parts = ", ".join(f"{name} {seconds:.1f}" for name, seconds in summary["wall_seconds_by_part"].items() if seconds)
     lines.append(f"  wall time [s]            {parts}")
     lines.append(f"  files in                 {folder}")

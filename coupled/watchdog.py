@@ -41,6 +41,6 @@ def watch(model: Model, seen: Observation) -> None:
     stored = sum(abs(value) for value in balance.entries.values())
     if balance.error > ENERGY_MADE * balance.throughput and balance.error > NOISE * stored:
         raise Unstable(
-            f"t = {model.time:g} s: {balance.error:.3g} J/m have come from nothing, {balance.relative_error:.0%} of the "
-            "energy turned over; take a smaller time.step"
+            f"t = {model.time:g} s: {balance.error:.3g} J/m have come from nothing, {balance.relative_error:.0%} of "
+            "the energy turned over; take a smaller time.step"
         )

@@ -76,6 +76,4 @@ def _draw(
     def snap(places: NDArray[np.float64]) -> NDArray[np.float64]:
         return origin + np.rint((places - origin) / spacing) * spacing
 
-    return generator.Drawing(
-        curves={name: [side] for name, side in zip(SIDES, sides)}, surfaces=[surface], snap=snap
-    )
+    return generator.Drawing(curves={name: [side] for name, side in zip(SIDES, sides)}, surfaces=[surface], snap=snap)

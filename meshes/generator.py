@@ -32,9 +32,7 @@ class Drawing:
     auxiliary: tuple[int, ...] = ()
 
 
-def transfinite_surface(
-    curves: list[int], corners: list[int], cell: str, arrangement: str = "AlternateLeft"
-) -> int:
+def transfinite_surface(curves: list[int], corners: list[int], cell: str, arrangement: str = "AlternateLeft") -> int:
     """Structured patch inside the closed loop of `curves`; returns the surface."""
     surface = gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(curves)])
     gmsh.model.geo.mesh.setTransfiniteSurface(surface, arrangement, corners)
@@ -116,10 +114,7 @@ def _generate(
     points = np.empty((len(places), 2))  # of the plain type: gmsh's own is unknown to mpi4py
     points[:] = places[:, :2]
     cells = np.vstack([_connectivity(2, surface) for surface in drawing.surfaces])
-    edges = {
-        name: np.vstack([_connectivity(1, curve) for curve in drawing.curves[name]])
-        for name in outer
-    }
+    edges = {name: np.vstack([_connectivity(1, curve) for curve in drawing.curves[name]]) for name in outer}
     polyline, outer_nodes = trace(points, edges, start)
     return points, cells, polyline, outer_nodes
 

@@ -46,18 +46,14 @@ def tube(
     generator.check_length("outer_radius", outer_radius)
     generator.check_length("inner_radius", inner_radius)
     if inner_radius >= outer_radius:
-        raise MeshError(
-            f"inner_radius = {inner_radius!r} must be smaller than outer_radius = {outer_radius!r}"
-        )
+        raise MeshError(f"inner_radius = {inner_radius!r} must be smaller than outer_radius = {outer_radius!r}")
     generator.check_count("around", around, 6)
     generator.check_count("layers", layers, 1)
     generator.check_point("centre", centre)
     generator.check_elements(cell, order)
     loaded = _loaded_facets(around, loaded_arc_degrees)
     return generator.build(
-        lambda: _draw(
-            (inner_radius, outer_radius), (around, layers), loaded, centre, (cell, order)
-        ),
+        lambda: _draw((inner_radius, outer_radius), (around, layers), loaded, centre, (cell, order)),
         names=PIECES,
         outer=("free_arc", "loaded_arc"),
         aliases={

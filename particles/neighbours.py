@@ -80,9 +80,7 @@ class ContactList:
         if first:
             self._require_apart(grains)
         else:
-            cells.carry_pairs(
-                old_of, before.start, before.partner, _history(before), *rows[::2], _history(self.pairs)
-            )
+            cells.carry_pairs(old_of, before.start, before.partner, _history(before), *rows[::2], _history(self.pairs))
         self._rebuild_walls(grains, old_of)
 
     def _storage_order(self, grains: Grains) -> np.ndarray:
@@ -138,12 +136,15 @@ class ContactList:
         block = np.searchsorted(grain, starts)
         force = old.force if len(old.force) == len(starts) - 1 else np.zeros((len(starts) - 1, len(old.px), 2))
         self.walls = old._replace(
-            px_listed=old.px.copy(), py_listed=old.py.copy(), force=force, grain=grain, wall=wall, block=block,
+            px_listed=old.px.copy(),
+            py_listed=old.py.copy(),
+            force=force,
+            grain=grain,
+            wall=wall,
+            block=block,
             **self._memory(len(grain)),
         )
-        cells.carry_walls(
-            old_of, grains.n_free, old.grain, old.wall, _history(old), grain, wall, _history(self.walls)
-        )
+        cells.carry_walls(old_of, grains.n_free, old.grain, old.wall, _history(old), grain, wall, _history(self.walls))
 
     def _grid(self, grains: Grains, largest_radius: float) -> Grid:
         """Cells of the largest diameter plus the skin over the bounding box of all grains."""
@@ -162,9 +163,7 @@ class ContactList:
             **{name: np.zeros(slots if self.ledger else 0) for name in ("dash_n", "dash_t", "dash_r")},
         }
 
-    def _pair_arrays(
-        self, start: np.ndarray, owner: np.ndarray, partner: np.ndarray, blocks: np.ndarray
-    ) -> PairArrays:
+    def _pair_arrays(self, start: np.ndarray, owner: np.ndarray, partner: np.ndarray, blocks: np.ndarray) -> PairArrays:
         crossing_start, *incoming = cells.list_crossings(blocks, start, partner)
         return PairArrays(
             start, owner, partner, **self._memory(len(partner)),
@@ -177,13 +176,22 @@ class ContactList:
         normal = np.array([w.unit_normal for w in walls], float).reshape(-1, 2)
         velocity = np.array([w.velocity for w in walls], float).reshape(-1, 2)
         columns: dict[str, Any] = {
-            "px": point[:, 0].copy(), "py": point[:, 1].copy(), "nx": normal[:, 0].copy(), "ny": normal[:, 1].copy(),
-            "vx": velocity[:, 0].copy(), "vy": velocity[:, 1].copy(),
-            "px_listed": point[:, 0].copy(), "py_listed": point[:, 1].copy(),
+            "px": point[:, 0].copy(),
+            "py": point[:, 1].copy(),
+            "nx": normal[:, 0].copy(),
+            "ny": normal[:, 1].copy(),
+            "vx": velocity[:, 0].copy(),
+            "vy": velocity[:, 1].copy(),
+            "px_listed": point[:, 0].copy(),
+            "py_listed": point[:, 1].copy(),
         }
         return WallArrays(
-            **columns, force=np.zeros((1, len(walls), 2)), grain=np.zeros(0, np.uint32), wall=np.zeros(0, np.uint32),
-            block=np.zeros(2, np.int64), **self._memory(0),
+            **columns,
+            force=np.zeros((1, len(walls), 2)),
+            grain=np.zeros(0, np.uint32),
+            wall=np.zeros(0, np.uint32),
+            block=np.zeros(2, np.int64),
+            **self._memory(0),
         )
 
     @staticmethod

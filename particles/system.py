@@ -134,7 +134,7 @@ class ParticleSystem:
         """Take `steps` leapfrog steps, making new contact lists where needed; 0 only loads the compiled code."""
         self.start()
         self.impulse[:] = 0.0
-        threaded = self.threads > 1 and len(self.blocks) > 2
+        threaded = self.threads > 1 and len(self.blocks) > 3  # one block of free grains leaves nothing to share
         step = stepping.advance_threaded if threaded else stepping.advance
         if threaded:
             numba.set_num_threads(self.threads)  # global: another system may have set its own
@@ -284,7 +284,8 @@ class ParticleSystem:
         missing = self.state().keys() - saved.keys()
         if missing:
             raise ParticleError(
-                f"saved state lacks {sorted(missing)[0]}: it was made with other features or by another version; start anew"
+                f"saved state lacks {sorted(missing)[0]}: it was made with other features or by another "
+                "version; start anew"
             )
         if len(saved["grains.x"]) != len(self.grains) or int(saved["grains.n_free"]) != self.grains.n_free:
             raise ParticleError(
@@ -306,7 +307,9 @@ class ParticleSystem:
             self.ledger.prescribed_work[:] = saved["prescribed_work"]
 
 
-def continued(saved: Mapping[str, NDArray[Any]], grains: Grains, contact: ContactModel, **options: Any) -> ParticleSystem:
+def continued(
+    saved: Mapping[str, NDArray[Any]], grains: Grains, contact: ContactModel, **options: Any
+) -> ParticleSystem:
     """A system that takes the free grains and contacts of a saved one and has prescribed grains of its own.
 
     Parameters

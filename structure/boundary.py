@@ -10,9 +10,7 @@ from structure.errors import StructureError
 from structure.nodes import NodeMap
 
 
-def agreed_force(
-    force: NDArray[np.float64], shape: tuple[int, ...], comm: MPI.Intracomm
-) -> NDArray[np.float64]:
+def agreed_force(force: NDArray[np.float64], shape: tuple[int, ...], comm: MPI.Intracomm) -> NDArray[np.float64]:
     """A copy of the nodal forces of rank 0, on every rank.
 
     Raises
@@ -22,8 +20,7 @@ def agreed_force(
     """
     if comm.rank == 0 and np.shape(force) != shape:
         raise StructureError(
-            f"boundary_force has shape {np.shape(force)}: one force per boundary node, {shape}, "
-            "is needed"
+            f"boundary_force has shape {np.shape(force)}: one force per boundary node, {shape}, is needed"
         )
     counting = np.empty(shape)
     if comm.rank == 0:
@@ -54,9 +51,7 @@ class LocalBoundary:
 class SharedBoundary:
     """Unknowns on several ranks: the one gather brings motion back."""
 
-    def __init__(
-        self, nodes: NodeMap, outer_nodes: NDArray[np.int64], comm: MPI.Intracomm
-    ) -> None:
+    def __init__(self, nodes: NodeMap, outer_nodes: NDArray[np.int64], comm: MPI.Intracomm) -> None:
         self._comm = comm
         place = np.full(outer_nodes.max() + 1, -1)
         place[outer_nodes] = np.arange(len(outer_nodes))

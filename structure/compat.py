@@ -33,9 +33,7 @@ def compiled(form: ufl.Form) -> fem.Form:
         return fem.form(form)
 
 
-def compiled_expression(
-    expression: ufl.core.expr.Expr, points: NDArray[np.float64]
-) -> fem.Expression:
+def compiled_expression(expression: ufl.core.expr.Expr, points: NDArray[np.float64]) -> fem.Expression:
     """An expression at reference points, compiled."""
     with quiet_compiler():
         return fem.Expression(expression, points)
@@ -69,9 +67,7 @@ def gauss_points(cell: str, degree: int) -> NDArray[np.float64]:
     return basix.make_quadrature(CELLS[cell], degree)[0]
 
 
-def evaluate(
-    expression: fem.Expression, domain: dolfinx.mesh.Mesh, cells: NDArray[np.int32]
-) -> NDArray[np.float64]:
+def evaluate(expression: fem.Expression, domain: dolfinx.mesh.Mesh, cells: NDArray[np.int32]) -> NDArray[np.float64]:
     """Values of an expression on cells."""
     if hasattr(fem, "functionspace"):
         return expression.eval(domain, cells)

@@ -37,9 +37,9 @@ class DiscreteBody:
         along_x = self.weigh(np.tile([1.0, 0.0], len(places)))
         along_y = self.weigh(np.tile([0.0, 1.0], len(places)))
         self.mass = self.total(along_x[0::2].sum())
-        self.centroid = np.array(
-            [self.total(along_x @ places.ravel()), self.total(along_y @ places.ravel())]
-        ) / self.mass
+        self.centroid = (
+            np.array([self.total(along_x @ places.ravel()), self.total(along_y @ places.ravel())]) / self.mass
+        )
         arm = places - self.centroid
         radial = self.weigh(arm.ravel())
         turning = self.weigh(np.column_stack([-arm[:, 1], arm[:, 0]]).ravel())

@@ -137,9 +137,7 @@ class ElasticStructure:
             self._mass_solve = factorise(self._body.mass_matrix)
         right, left = self._body.mass_matrix.createVecs()
         right.set(0.0)
-        self._exchange.add(
-            agreed_force(boundary_force, self.polyline.points.shape, self.comm), right.array
-        )
+        self._exchange.add(agreed_force(boundary_force, self.polyline.points.shape, self.comm), right.array)
         self._mass_solve(right, left)
         return self._exchange.read((left.array,), ())[0][0]
 
@@ -254,9 +252,7 @@ class ElasticStructure:
         for name in STATE_FIELDS:
             given = self._nodal(name, state[name])
             getattr(self._stepper, name)[:] = self._body.nodes.share(given)
-        self._force = agreed_force(
-            state["boundary_force"], self.polyline.points.shape, self.comm
-        )
+        self._force = agreed_force(state["boundary_force"], self.polyline.points.shape, self.comm)
         self._loss, self._external_work, self._boundary_work = map(float, state["sums"])
         self._steps = int(state["steps"])
         self._external = self._loads.at(self.time)
@@ -292,9 +288,7 @@ class ElasticStructure:
         return self._probe
 
 
-def _damping_matrix(
-    mass: PETSc.Mat, stiffness: PETSc.Mat, damping: Rayleigh | None
-) -> PETSc.Mat | None:
+def _damping_matrix(mass: PETSc.Mat, stiffness: PETSc.Mat, damping: Rayleigh | None) -> PETSc.Mat | None:
     """``c_a M + c_b K``, or None without damping."""
     if damping is None or damping.mass_factor == damping.stiffness_factor == 0.0:
         return None

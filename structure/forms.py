@@ -49,9 +49,7 @@ def stiffness_matrix(space: fem.FunctionSpace, material: PlaneStrain, order: int
     return _assembled(ufl.inner(stress, strain(test)) * dx)
 
 
-def boundary_weights(
-    space: fem.FunctionSpace, mesh: StructureMesh, tags: tuple[int, ...]
-) -> NDArray[np.float64]:
+def boundary_weights(space: fem.FunctionSpace, mesh: StructureMesh, tags: tuple[int, ...]) -> NDArray[np.float64]:
     """Share [m] of a tagged boundary's length at this rank's nodes, shape (owned nodes,)."""
     marked = np.isin(mesh.facet_tags.values, tags)
     facets = mesh.facet_tags.indices[marked]
@@ -59,8 +57,6 @@ def boundary_weights(
     metadata = {"quadrature_degree": 2 * mesh.order + 1}
     ds = ufl.Measure("ds", domain=mesh.domain, subdomain_data=on_boundary, metadata=metadata)
     ones = fem.Constant(mesh.domain, np.ones(2, dtype=PETSc.ScalarType))
-    vector = fem_petsc.assemble_vector(
-        compat.compiled(ufl.inner(ones, ufl.TestFunction(space)) * ds(1))
-    )
+    vector = fem_petsc.assemble_vector(compat.compiled(ufl.inner(ones, ufl.TestFunction(space)) * ds(1)))
     vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
     return vector.array.reshape(-1, 2)[:, 0].copy()

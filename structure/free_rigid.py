@@ -96,9 +96,7 @@ class FreeRigid:
     def begin_under(self, boundary_force: NDArray[np.float64]) -> None:
         """Start anew at t = 0 with the present velocity, under nodal forces (n_b, 2) [N/m]."""
         now = self._motion
-        self.set_initial(
-            velocity=tuple(now.velocity), spin=now.spin, angle=now.angle, boundary_force=boundary_force
-        )
+        self.set_initial(velocity=tuple(now.velocity), spin=now.spin, angle=now.angle, boundary_force=boundary_force)
 
     def acceleration_by(self, boundary_force: NDArray[np.float64]) -> NDArray[np.float64]:
         """Boundary acceleration (n_b, 2) [m/s^2] that nodal forces alone cause on the body at rest."""

@@ -55,17 +55,14 @@ def _vector(body: DiscreteBody, load: Load) -> NDArray[np.float64]:
             return _on_boundary(body, load)
         case PointLoad():
             return _on_node(body, load)
-    raise StructureError(
-        f"load {load!r} is not known: use a BodyForce, a BoundaryLoad or a PointLoad"
-    )
+    raise StructureError(f"load {load!r} is not known: use a BodyForce, a BoundaryLoad or a PointLoad")
 
 
 def _on_boundary(body: DiscreteBody, load: BoundaryLoad) -> NDArray[np.float64]:
     named = body.mesh.boundaries
     if load.boundary not in named:
         raise StructureError(
-            f"boundary = '{load.boundary}' is not a boundary of this mesh: "
-            f"use one of {', '.join(sorted(named))}"
+            f"boundary = '{load.boundary}' is not a boundary of this mesh: use one of {', '.join(sorted(named))}"
         )
     weights = forms.boundary_weights(body.space, body.mesh, named[load.boundary])
     length = body.comm.allreduce(weights.sum())

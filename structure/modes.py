@@ -47,16 +47,11 @@ def elastic_modes(
     """
     unknowns = stiffness.getSize()[0]
     if not 1 <= count <= unknowns - RIGID_MODES:
-        raise StructureError(
-            f"mode {count} does not exist: this mesh has elastic modes 1 to "
-            f"{unknowns - RIGID_MODES}"
-        )
+        raise StructureError(f"mode {count} does not exist: this mesh has elastic modes 1 to {unknowns - RIGID_MODES}")
     solver = _solver(body, stiffness, material, count)
     solver.solve()
     if solver.getConverged() < count:
-        raise StructureError(
-            f"only {solver.getConverged()} of {count} modes converged: ask for fewer"
-        )
+        raise StructureError(f"only {solver.getConverged()} of {count} modes converged: ask for fewer")
     vector = stiffness.createVecRight()
     pairs = []
     for k in range(count):
@@ -69,9 +64,7 @@ def elastic_modes(
     return np.array([pair[0] for pair in pairs]), [pair[1] for pair in pairs]
 
 
-def _solver(
-    body: DiscreteBody, stiffness: PETSc.Mat, material: PlaneStrain, count: int
-) -> SLEPc.EPS:
+def _solver(body: DiscreteBody, stiffness: PETSc.Mat, material: PlaneStrain, count: int) -> SLEPc.EPS:
     """Shift and invert below zero, where ``K - shift M`` is positive definite."""
     solver = SLEPc.EPS().create(body.comm)
     solver.setOperators(stiffness, body.mass_matrix)

@@ -29,9 +29,7 @@ class Newmark:
     def __post_init__(self) -> None:
         positive("beta", self.beta, "Newmark")
         if not np.isfinite(self.gamma) or self.gamma < 0.5:
-            raise StructureError(
-                f"gamma = {self.gamma!r} feeds energy at every step: use gamma of at least 0.5"
-            )
+            raise StructureError(f"gamma = {self.gamma!r} feeds energy at every step: use gamma of at least 0.5")
         least = (0.5 + self.gamma) ** 2 / 4
         if self.beta < least * (1 - 1e-12) and not self.allow_conditional:
             raise StructureError(
@@ -64,10 +62,7 @@ class NewmarkStepper:
         self._dt, self._beta, self._gamma = dt, scheme.beta, scheme.gamma
         names = ("displacement", "velocity", "acceleration", "force", "increment", "product")
         arrays = {name: np.zeros(mass.getLocalSize()[0]) for name in names}
-        vectors = {
-            name: PETSc.Vec().createWithArray(array, comm=mass.comm)
-            for name, array in arrays.items()
-        }
+        vectors = {name: PETSc.Vec().createWithArray(array, comm=mass.comm) for name, array in arrays.items()}
         self.displacement, self._u = arrays["displacement"], vectors["displacement"]
         self.velocity, self._v = arrays["velocity"], vectors["velocity"]
         self.acceleration, self._a = arrays["acceleration"], vectors["acceleration"]

@@ -159,16 +159,9 @@ class PrescribedRigid:
 def _checked_path(path: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     rows = np.asarray(path, dtype=float)
     if rows.ndim != 2 or rows.shape[1] != 3 or not np.all(np.isfinite(rows)):
-        raise StructureError(
-            f"path of shape {rows.shape} must have finite rows "
-            "(time in s, x and y displacement in m)"
-        )
+        raise StructureError(f"path of shape {rows.shape} must have finite rows (time in s, x and y displacement in m)")
     if np.any(rows[0] != 0.0):
-        raise StructureError(
-            f"path begins with {rows[0].tolist()}: its first row must be [0, 0, 0]"
-        )
+        raise StructureError(f"path begins with {rows[0].tolist()}: its first row must be [0, 0, 0]")
     if np.any(np.diff(rows[:, 0]) <= 0):
-        raise StructureError(
-            f"path has the times {rows[:, 0].tolist()}: each must be later than the one before"
-        )
+        raise StructureError(f"path has the times {rows[:, 0].tolist()}: each must be later than the one before")
     return rows[:, 0].copy(), rows[:, 1:].copy()

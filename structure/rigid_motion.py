@@ -55,9 +55,7 @@ def _quarter_turn(arms: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.column_stack([-arms[:, 1], arms[:, 0]])
 
 
-def rigid_fields(
-    mesh: StructureMesh, centroid: NDArray[np.float64], motion: RigidMotion
-) -> StructureFields:
+def rigid_fields(mesh: StructureMesh, centroid: NDArray[np.float64], motion: RigidMotion) -> StructureFields:
     """Fields of a rigid body: displacement and velocity; stress and strain are zero."""
     arms = mesh.points - centroid
     moving = {"displacement": motion.displacement_of(arms), "velocity": motion.velocity_of(arms)}

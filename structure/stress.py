@@ -27,9 +27,7 @@ class StressProbe:
         self._at_nodes = compat.compiled_expression(strain, compat.interpolation_points(body.space))
         self._at_gauss = compat.compiled_expression(strain, gauss)
 
-    def _strain(
-        self, expression: fem.Expression, displacement: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def _strain(self, expression: fem.Expression, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """Strain (owned cells, points, 3) of flat nodal displacements."""
         x = self._displacement.x
         x.array[: len(displacement)] = displacement
@@ -52,7 +50,5 @@ class StressProbe:
         comm = self._body.comm
         return StructurePeaks(
             von_mises=comm.allreduce(float(stress.max(initial=0.0)), op=MPI.MAX),
-            strain=comm.allreduce(
-                float(largest_principal_strain(strain).max(initial=0.0)), op=MPI.MAX
-            ),
+            strain=comm.allreduce(float(largest_principal_strain(strain).max(initial=0.0)), op=MPI.MAX),
         )

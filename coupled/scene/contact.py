@@ -17,9 +17,7 @@ class Recipe(Table):
     largest_overlap: Annotated[Number, Field(gt=0, lt=1)] = Field(
         0.05, description="overlap allowed, as a fraction of the smallest radius [-]"
     )
-    restitution: Annotated[Number, Field(gt=0, le=1)] = Field(
-        description="speed of rebound over speed of impact [-]"
-    )
+    restitution: Annotated[Number, Field(gt=0, le=1)] = Field(description="speed of rebound over speed of impact [-]")
     restitution_at: Literal["zero_force", "zero_overlap"] = Field(
         "zero_force",
         description="end of the contact that the restitution refers to: zero force, as the contact "
@@ -37,16 +35,10 @@ class Contact(Table):
     normal_stiffness: Positive | None = Field(None, description="normal spring k_n [N/m]")
     normal_damping: NonNegative | None = Field(None, description="normal dashpot c_n [N s/m]")
     tangential_stiffness: Positive | None = Field(None, description="tangential spring k_t [N/m]")
-    tangential_damping: NonNegative | None = Field(
-        None, description="tangential dashpot c_t [N s/m]"
-    )
+    tangential_damping: NonNegative | None = Field(None, description="tangential dashpot c_t [N s/m]")
     friction: NonNegative | None = Field(None, description="Coulomb's coefficient mu [-]")
-    rolling_friction: NonNegative | None = Field(
-        None, description="rolling friction coefficient mu_r [-]"
-    )
-    rolling_damping_ratio: NonNegative | None = Field(
-        None, description="rolling damping over critical eta_r [-]"
-    )
+    rolling_friction: NonNegative | None = Field(None, description="rolling friction coefficient mu_r [-]")
+    rolling_damping_ratio: NonNegative | None = Field(None, description="rolling damping over critical eta_r [-]")
     rolling_stiffness: Positive | None = Field(
         None, description="rolling spring k_r [N m/rad]; absent: k_t R_r^2 of each contact"
     )

@@ -33,9 +33,7 @@ class Grains(Table):
     sizes: tuple[SizeClass, ...] = Field(min_length=1, description="radii and counts")
     density: Positive = Field(description="mass of a grain per volume [kg/m3]")
     seed: Whole = Field(1, description="seed of the order of sizes and of the jitter")
-    spacing: Annotated[Number, Field(ge=1)] = Field(
-        1.05, description="lattice spacing over the largest diameter [-]"
-    )
+    spacing: Annotated[Number, Field(ge=1)] = Field(1.05, description="lattice spacing over the largest diameter [-]")
     jitter: Fraction = Field(0.0, description="random shift as a fraction of the free gap [-]")
     layout: Literal["lattice", "list"] = Field("lattice", description="how grains start")
     positions: tuple[Annotated[tuple[Number, ...], Field(min_length=2, max_length=5)], ...] = Field(
@@ -76,9 +74,7 @@ class SettledGrains(Table):
 
     beside: ClassVar[str] = " together with bed"
 
-    bed: Annotated[str, Field(min_length=1)] = Field(
-        description="name or path of the scene that settles the grains"
-    )
+    bed: Annotated[str, Field(min_length=1)] = Field(description="name or path of the scene that settles the grains")
 
 
 def _layout_of(data: Any) -> str:

@@ -14,16 +14,10 @@ class Interface(Table):
     """Grains glued to the boundary of the structure: the door between both physics."""
 
     kind: Literal["glued"] = Field("glued", description="kind of interface")
-    per_facet: Count | None = Field(
-        None, description="glued grains per facet: one on each node, the others between"
-    )
+    per_facet: Count | None = Field(None, description="glued grains per facet: one on each node, the others between")
     count: Count | None = Field(None, description="glued grains in all, instead of per_facet")
-    diameter: Positive | None = Field(
-        None, description="diameter of a glued grain [m]; absent: the smallest spacing"
-    )
-    boundaries: tuple[str, ...] = Field(
-        ("outer",), min_length=1, description="boundaries that carry glued grains"
-    )
+    diameter: Positive | None = Field(None, description="diameter of a glued grain [m]; absent: the smallest spacing")
+    boundaries: tuple[str, ...] = Field(("outer",), min_length=1, description="boundaries that carry glued grains")
     velocity: Literal["shape", "mean"] = Field(
         "shape", description="velocity of a glued grain: interpolated, or the facet's mean (G)"
     )

@@ -68,9 +68,7 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as error:
-        raise SceneError(
-            f"{path}: this is not valid TOML, mend it: {error}.", file=path.name
-        ) from None
+        raise SceneError(f"{path}: this is not valid TOML, mend it: {error}.", file=path.name) from None
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(f"{path}: cannot be read: {error}.", file=path.name) from None
 
@@ -119,8 +117,7 @@ def _bed_file(name: str, path: Path, chain: tuple[Path, ...]) -> Path:
         raise SceneError(f'grains.bed = "{name}" is not found: {error}', key="grains.bed") from None
     if file.resolve() in chain:
         raise SceneError(
-            f'grains.bed = "{name}" leads back to this scene; name a scene that lays '
-            "grains out.",
+            f'grains.bed = "{name}" leads back to this scene; name a scene that lays grains out.',
             key="grains.bed",
         )
     return file

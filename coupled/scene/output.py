@@ -14,8 +14,7 @@ class Time(Table):
     step: Positive = Field(description="time step of the grains [s]")
     stop_at_rest: Positive | None = Field(
         None,
-        description="stop when the mean kinetic energy per grain over the mean m |g| d "
-        "falls below this [-]",
+        description="stop when the mean kinetic energy per grain over the mean m |g| d falls below this [-]",
     )
 
 

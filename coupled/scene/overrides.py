@@ -18,14 +18,13 @@ def parse_override(text: str) -> tuple[list[str], Any]:
     """
     key, equals, value = (part.strip() for part in text.partition("="))
     if not equals or not key or not all(key.split(".")):
-        raise SceneError(f'--set {text}: write it as key=value, e.g. --set time.step=1e-5.')
+        raise SceneError(f"--set {text}: write it as key=value, e.g. --set time.step=1e-5.")
     try:
         parsed = tomllib.loads(f"value = {value}")["value"]
     except tomllib.TOMLDecodeError:
         if not _BARE_WORD.fullmatch(value):
             raise SceneError(
-                f"--set {text}: '{value}' is no TOML value; write a number, true, a list or a "
-                'string in quotes.',
+                f"--set {text}: '{value}' is no TOML value; write a number, true, a list or a string in quotes.",
                 key=key,
             ) from None
         parsed = value

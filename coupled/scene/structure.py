@@ -105,9 +105,7 @@ class Structure(Table):
     kind: Literal["elastic", "rigid", "free_rigid"] = Field(description="mechanical model")
     density: Positive | None = Field(None, description="mass per volume [kg/m3]")
     youngs_modulus: Positive | None = Field(None, description="Young's modulus E [Pa]")
-    poissons_ratio: Annotated[Number, Field(gt=-1, lt=0.5)] | None = Field(
-        None, description="Poisson's ratio nu [-]"
-    )
+    poissons_ratio: Annotated[Number, Field(gt=-1, lt=0.5)] | None = Field(None, description="Poisson's ratio nu [-]")
     tube: Tube | None = Field(None, description="a ring")
     beam: Beam | None = Field(None, description="a rectangle")
     placement: Placement = Field(default_factory=Placement, description="start of the centroid")

@@ -67,9 +67,7 @@ def _forces(grains, pairs, walls, normal, tangential, rolling, ledger, dt):
         add_incoming(b, grains, pairs, tangential is not None)
 
 
-def _advance(
-    grains, pairs, walls, gravity, normal, tangential, rolling, damping, ledger, drifted, reach2, steps, dt
-):
+def _advance(grains, pairs, walls, gravity, normal, tangential, rolling, damping, ledger, drifted, reach2, steps, dt):
     """Up to `steps` leapfrog steps: drift, contact forces, kick.
 
     Returns the number of steps done, and 1 if the list went stale: then the grains have drifted

@@ -2,8 +2,9 @@
 
 Numba's disk cache looks at the file of the compiled function alone: it keeps stale machine
 code when a *callee in another file* changes. The cache folder is therefore named after a hash
-of the sources of all kernels, so that any edit starts a fresh one. No fast-math flag is set, not even contraction: the same bits
-must come out of the serial and the threaded build of a loop, with the ledger and without.
+of the sources of all kernels, so that any edit starts a fresh one. No fast-math flag is set, not
+even contraction: the same bits must come out of the serial and the threaded build of a loop, with
+the ledger and without.
 """
 
 import hashlib

@@ -37,9 +37,7 @@ class IndependentBeam:
     Nodes are numbered row by row from below; unknowns are (x, y) of each node.
     """
 
-    def __init__(
-        self, *, length: float, height: float, along: int, across: int, young: float, poisson: float
-    ) -> None:
+    def __init__(self, *, length: float, height: float, along: int, across: int, young: float, poisson: float) -> None:
         self.length, self.height, self.along, self.across = length, height, along, across
         column, row = (a.ravel() for a in np.meshgrid(np.arange(along), np.arange(across)))
         first = row * (along + 1) + column

@@ -7,7 +7,6 @@ from coupled.build import Built, build
 from coupled.scene import Scene, load_scene
 
 
-
 def rigid_beam_on_springs(
     *,
     step: float,

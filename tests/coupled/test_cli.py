@@ -80,8 +80,18 @@ def test_run_hands_everything_over(leito, stand_in, tmp_path):
     calls = []
     stand_in("run", "run_scene", lambda scene, **options: calls.append((scene, options)))
     code, *_ = leito(
-        "run", "bed", "--set", "time.duration=0.5", "--set", "grains.sizes.0.count=7",
-        "--out", tmp_path / "here", "--threads", 2, "--overwrite", "--no-progress",
+        "run",
+        "bed",
+        "--set",
+        "time.duration=0.5",
+        "--set",
+        "grains.sizes.0.count=7",
+        "--out",
+        tmp_path / "here",
+        "--threads",
+        2,
+        "--overwrite",
+        "--no-progress",
     )
     assert code == 0
     scene, options = calls[0]
@@ -134,8 +144,7 @@ def test_bad_scene_is_one_line_and_exit_code_2(leito):
     code, out, err = leito("run", "elastic_tube", "--set", "structure.youngs_modulus=-1.0")
     assert code == 2 and out == ""
     assert err.splitlines() == [
-        "leito: elastic_tube.toml: structure.youngs_modulus = -1 must be greater than 0 "
-        "(Young's modulus E [Pa])."
+        "leito: elastic_tube.toml: structure.youngs_modulus = -1 must be greater than 0 (Young's modulus E [Pa])."
     ]
 
 

@@ -68,9 +68,7 @@ def test_polyline_is_one_closed_counter_clockwise_loop(shape: str, cell: str, or
     if shape == "beam":
         mesh = meshes.beam(length=0.5, height=0.025, along=10, cell=cell, order=order)
     else:
-        mesh = meshes.tube(
-            outer_radius=0.05, inner_radius=0.04, centre=(0.6, 0.3), cell=cell, order=order
-        )
+        mesh = meshes.tube(outer_radius=0.05, inner_radius=0.04, centre=(0.6, 0.3), cell=cell, order=order)
         np.testing.assert_allclose(mesh.outer_polyline.points[0], [0.6, 0.25], atol=1e-16)
     polyline = mesh.outer_polyline
     count = len(polyline.points)

@@ -81,9 +81,7 @@ class Dense:
         limit = law["mu_r"] * k["reduced"] * f_n
         trial = self.moment - k_r * k["rolling"] * held
         self.moment = np.clip(trial, -limit, limit) * touch
-        moment = np.where(
-            abs(trial) > limit, self.moment, np.clip(self.moment - c_r * k["rolling"], -limit, limit)
-        )
+        moment = np.where(abs(trial) > limit, self.moment, np.clip(self.moment - c_r * k["rolling"], -limit, limit))
         on_i = f_t[..., None] * tangent - f_n[..., None] * k["normal"]
         force = (on_i * touch[..., None]).sum(axis=1)
         return force, ((k["arm"] * f_t + moment) * touch).sum(axis=1)

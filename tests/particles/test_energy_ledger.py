@@ -94,9 +94,7 @@ SLIP = 0.2  # initial slip velocity of the contact point
 def slider(**law: float) -> ParticleSystem:
     """A resting disc that is set to spin: it slips, then rolls on. Its slip has the mass m/3."""
     grains = resting_disc(**SLIDER, spin=-SLIP / SLIDER["radius"])
-    return full_law(
-        grains, k_n=SLIDER["k_n"], **law, walls=[FLOOR], gravity=(0.0, -G), time_step=2e-6
-    )
+    return full_law(grains, k_n=SLIDER["k_n"], **law, walls=[FLOOR], gravity=(0.0, -G), time_step=2e-6)
 
 
 def test_sliding_takes_friction_times_distance() -> None:

@@ -24,9 +24,7 @@ def roll(k_t: float, *, damping_ratio: float = 0.0) -> tuple[np.ndarray, np.ndar
     """Times of the velocities, and velocity and spin (2, n), every 20 steps."""
     c_t = damping_ratio * 2.0 * np.sqrt(k_t * MASS / 3.0)  # slip feels the mass m/3
     grains = resting_disc(radius=RADIUS, mass=MASS, gravity=G, k_n=K_N, vx=V0, spin=SPIN0)
-    system = full_law(
-        grains, k_n=K_N, k_t=k_t, c_t=c_t, mu=MU, walls=[FLOOR], gravity=(0.0, -G), time_step=DT
-    )
+    system = full_law(grains, k_n=K_N, k_t=k_t, c_t=c_t, mu=MU, walls=[FLOOR], gravity=(0.0, -G), time_step=DT)
     times, motion = [], []
     for _ in range(int(DURATION / (20 * DT))):
         system.advance(20)

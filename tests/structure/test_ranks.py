@@ -77,6 +77,4 @@ def test_two_ranks_give_the_serial_answer(tmp_path: Path) -> None:
     for name in serial.files:
         scale = np.abs(serial[name]).max()
         for parallel in ranks:
-            np.testing.assert_allclose(
-                parallel[name], serial[name], rtol=0, atol=1e-9 * scale + 1e-15, err_msg=name
-            )
+            np.testing.assert_allclose(parallel[name], serial[name], rtol=0, atol=1e-9 * scale + 1e-15, err_msg=name)

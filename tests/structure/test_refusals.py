@@ -24,9 +24,7 @@ def mesh() -> meshes.StructureMesh:
 
 
 def elastic(**options) -> ElasticStructure:
-    return ElasticStructure(
-        mesh(), **({"material": PlaneStrain(**STEEL), "time_step": 1e-5} | options)
-    )
+    return ElasticStructure(mesh(), **({"material": PlaneStrain(**STEEL), "time_step": 1e-5} | options))
 
 
 def path(*rows) -> PrescribedRigid:

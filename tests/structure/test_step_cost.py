@@ -11,9 +11,7 @@ def test_step_of_the_tube_takes_tens_of_microseconds(aluminium: PlaneStrain) -> 
     tube = meshes.tube(outer_radius=0.05, inner_radius=0.04)
     load = BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -1000.0))
     damping = Rayleigh(mass_factor=0.005, stiffness_factor=1e-6)
-    body = ElasticStructure(
-        tube, material=aluminium, time_step=4e-5, damping=damping, loads=[load]
-    )
+    body = ElasticStructure(tube, material=aluminium, time_step=4e-5, damping=damping, loads=[load])
     force = np.zeros_like(tube.outer_polyline.points)
     times = []
     for _ in range(10):

@@ -143,9 +143,7 @@ def test_free_fall_of_the_loaded_body_is_exact(soft: PlaneStrain) -> None:
     np.testing.assert_allclose(body.centroid()[1], expected, rtol=1e-10)
     np.testing.assert_allclose(body.boundary_displacement[:, 1], expected, rtol=1e-8)
     np.testing.assert_allclose(before[:, 1], expected, rtol=1e-8)
-    np.testing.assert_array_equal(
-        body.predict(0.5, order=1), body.boundary_displacement + 0.5 * body.boundary_velocity
-    )
+    np.testing.assert_array_equal(body.predict(0.5, order=1), body.boundary_displacement + 0.5 * body.boundary_velocity)
 
 
 def test_restored_structure_goes_on_with_the_same_bits(soft: PlaneStrain) -> None:
@@ -154,9 +152,7 @@ def test_restored_structure_goes_on_with_the_same_bits(soft: PlaneStrain) -> Non
     def build() -> ElasticStructure:
         load = BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -10.0), ramp_time=0.01)
         damping = Rayleigh(mass_factor=0.1, stiffness_factor=1e-4)
-        return ElasticStructure(
-            tube, material=soft, time_step=1e-4, damping=damping, loads=[load]
-        )
+        return ElasticStructure(tube, material=soft, time_step=1e-4, damping=damping, loads=[load])
 
     rng = np.random.default_rng(5)
     forces = rng.normal(size=(160, *tube.outer_polyline.points.shape))

@@ -58,7 +58,10 @@ def rigid_tube(folder: Path, history: History) -> list[Check]:
     deep, left = near(history, "reaction_y", 10.0), near(history, "reaction_y", 12.0)
     strip = bearing(0.1, 0.1)
     return [
-        Check("rigid_tube", "vertical force at full depth", "about 1200 N/m", f"{deep:.0f} N/m", abs(deep / 1200 - 1) < 0.3),
+        Check(
+            "rigid_tube", "vertical force at full depth", "about 1200 N/m", f"{deep:.0f} N/m",
+            abs(deep / 1200 - 1) < 0.3,
+        ),
         Check("rigid_tube", "force 2 s after the turn", "drops at once", f"{left:.0f} N/m", abs(left) < 0.1 * deep),
         Check(
             "rigid_tube", "bearing of a strip 0.1 m wide, 0.1 m deep, at 20.5 degrees", f"order {strip:.0f} N/m",
@@ -70,7 +73,10 @@ def rigid_tube(folder: Path, history: History) -> list[Check]:
 def rigid_beam(folder: Path, history: History) -> list[Check]:
     most, strip = float(history["reaction_y"].max()), bearing(0.5, 0.05)
     return [
-        Check("rigid_beam", "largest vertical force", "about 13 350 N/m", f"{most:.0f} N/m", abs(most / 13350 - 1) < 0.15),
+        Check(
+            "rigid_beam", "largest vertical force", "about 13 350 N/m", f"{most:.0f} N/m",
+            abs(most / 13350 - 1) < 0.15,
+        ),
         Check(
             "rigid_beam", "bearing of a strip 0.5 m wide, 0.05 m deep, at 20.5 degrees", f"order {strip:.0f} N/m",
             f"{most:.0f} N/m", 0.5 < most / strip < 2.0,
@@ -121,7 +127,8 @@ def elastic_beam(folder: Path, history: History) -> list[Check]:
     return [
         Check("elastic_beam", "reaction at rest", "6000 N/m", f"{reaction:.2f} N/m", abs(reaction / 6000 - 1) < 0.02),
         Check(
-            "elastic_beam", "middle of the axis above its ends", "yes, the ends bend down", f"{1e6 * bow:.1f} um", bow > 0.0
+            "elastic_beam", "middle of the axis above its ends", "yes, the ends bend down", f"{1e6 * bow:.1f} um",
+            bow > 0.0,
         ),
     ]  # fmt: skip
 

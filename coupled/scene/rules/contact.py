@@ -33,9 +33,7 @@ def check_contact(scene: Scene) -> None:
         needs = "friction" if name == "rolling_friction" else "rolling_friction"
         value = getattr(contact, name)
         if value is not None and getattr(contact, needs) is None:
-            raise refusal(
-                f"contact.{name}", value, f"needs contact.{needs}; give that or remove this"
-            )
+            raise refusal(f"contact.{name}", value, f"needs contact.{needs}; give that or remove this")
 
 
 def _check_friction(contact: Contact) -> None:
@@ -48,9 +46,7 @@ def _check_friction(contact: Contact) -> None:
     for name in ("tangential_stiffness", "tangential_damping"):
         value = getattr(contact, name)
         if value is not None and contact.friction is None:
-            raise refusal(
-                f"contact.{name}", value, "needs contact.friction; give that or remove this"
-            )
+            raise refusal(f"contact.{name}", value, "needs contact.friction; give that or remove this")
 
 
 def _check_recipe(scene: Scene, contact: Contact) -> None:

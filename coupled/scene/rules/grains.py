@@ -54,8 +54,7 @@ def _check_size(grains: Grains, box: Box) -> None:
             raise refusal(
                 f"grains.sizes.{index}.radius",
                 size.radius,
-                f"is larger than the box of {box.width:g} x {box.height:g} m; "
-                "reduce the radius or enlarge the box",
+                f"is larger than the box of {box.width:g} x {box.height:g} m; reduce the radius or enlarge the box",
             )
 
 
@@ -76,8 +75,7 @@ def _check_positions(grains: Grains, box: Box | None) -> None:
             raise refusal(
                 f"grains.positions.{index}",
                 list(row),
-                f"puts a grain of radius {radius:g} m outside the box of {box.width:g} x "
-                f"{box.height:g} m; move it in",
+                f"puts a grain of radius {radius:g} m outside the box of {box.width:g} x {box.height:g} m; move it in",
             )
 
 

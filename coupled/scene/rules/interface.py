@@ -33,8 +33,7 @@ def check_interface(scene: Scene) -> None:
             raise refusal(
                 "interface.diameter",
                 interface.diameter,
-                f"makes glued grains overlap, {spacing:.6g} m apart; give at most that, or "
-                "fewer per facet",
+                f"makes glued grains overlap, {spacing:.6g} m apart; give at most that, or fewer per facet",
             )
 
 
@@ -58,25 +57,20 @@ def _check_boundaries(interface: Interface, shape: Shape) -> None:
 def _check_number(interface: Interface, shape: Shape) -> None:
     per_facet, count = interface.per_facet, interface.count
     if per_facet is not None and count is not None:
-        raise refusal(
-            "interface.count", count, f"is given together with per_facet = {per_facet}; keep one"
-        )
+        raise refusal("interface.count", count, f"is given together with per_facet = {per_facet}; keep one")
     if count is None:
         if per_facet is None:
             raise missing("interface.per_facet", "say how many glued grains sit on each facet")
         return
     facets = len(interface.facet_lengths(shape))
     if "outer" not in interface.boundaries and len(interface.boundaries) > 1:
-        raise refusal(
-            "interface.count", count, "is ambiguous on several boundaries; give per_facet instead"
-        )
+        raise refusal("interface.count", count, "is ambiguous on several boundaries; give per_facet instead")
     open_end = 0 if "outer" in interface.boundaries else 1
     if count <= open_end or (count - open_end) % facets:
         raise refusal(
             "interface.count",
             count,
-            f"does not spread over {facets} facets; give {open_end} plus a multiple of {facets}, "
-            "or per_facet",
+            f"does not spread over {facets} facets; give {open_end} plus a multiple of {facets}, or per_facet",
         )
 
 
@@ -96,9 +90,7 @@ def check_rows(scene: Scene) -> None:
 def _check_under(scene: Scene, under: str, key: str) -> None:
     interface, structure = scene.interface, scene.structure
     if interface is None or structure is None:
-        raise refusal(
-            key, under, "needs glued grains above; add [structure] and [interface] or give start"
-        )
+        raise refusal(key, under, "needs glued grains above; add [structure] and [interface] or give start")
     covered = under in interface.boundaries or "outer" in interface.boundaries
     if under not in structure.shape.glueable or not covered:
         allowed = structure.shape.glueable if covered else interface.boundaries

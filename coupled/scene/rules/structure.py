@@ -59,9 +59,7 @@ def _check_kind(structure: Structure) -> None:
 def _check_shape(structure: Structure) -> None:
     tube, beam = structure.tube, structure.beam
     if tube is not None and beam is not None:
-        raise refusal(
-            "structure.beam", {}, "is given together with structure.tube; keep one of them"
-        )
+        raise refusal("structure.beam", {}, "is given together with structure.tube; keep one of them")
     if tube is None and beam is None:
         raise missing("structure.tube", "a structure needs a shape; add it or [structure.beam]")
     if tube is not None and tube.inner_radius >= tube.outer_radius:
@@ -117,13 +115,9 @@ def _check_placement(scene: Scene, structure: Structure) -> None:
     on_bed = place.y == "on_bed"
     floor = box is not None and "floor" in box.walls
     if on_bed and scene.grains is None and not floor:
-        raise refusal(
-            "structure.placement.y", "on_bed", "needs grains or a floor below; give a number in m"
-        )
+        raise refusal("structure.placement.y", "on_bed", "needs grains or a floor below; give a number in m")
     if place.gap > 0 and not on_bed:
-        raise refusal(
-            "structure.placement.gap", place.gap, 'only counts with y = "on_bed"; remove it'
-        )
+        raise refusal("structure.placement.gap", place.gap, 'only counts with y = "on_bed"; remove it')
     if box is None:
         return
     glued = _glued_radius(scene, structure)

@@ -24,8 +24,7 @@ def check_whole(scene: Scene) -> None:
             if there:
                 raise missing(
                     "interface",
-                    f"a structure meets {key} only through glued grains; add [interface] "
-                    f"or remove [{key}]",
+                    f"a structure meets {key} only through glued grains; add [interface] or remove [{key}]",
                 )
     if scene.damping is not None and scene.grains is None:
         raise refusal("damping", {}, "acts on free grains alone; add [grains] or remove it")
