@@ -79,6 +79,7 @@ def run_scene(
         return folder.path
     started = time.perf_counter()
     built = _together(comm, lambda: build(scene, bed=settled, threads=threads, comm=comm))
+    _on_root(comm, lambda: folder.take(scene))
     run = Run(built, folder, comm, seconds)
     run.seconds["setup"] = time.perf_counter() - started
     run.go(progress=progress)

@@ -23,17 +23,28 @@ FREE_TO_CHANGE = ("time.duration", "output.", "title")  # when a run is taken up
 
 @dataclass(frozen=True)
 class RunFolder:
-    """A folder that is ready: `saved` holds the checkpoint of a run to take up again."""
+    """A folder that may be used: `saved` holds the checkpoint of a run to take up again.
+
+    Nothing is written before `take`, so that a scene refused in between leaves no trace.
+    """
 
     path: Path
     saved: dict[str, Any] | None
+    to_clear: bool
 
     def file(self, name: str) -> Path:
         return self.path / name
 
+    def take(self, scene: Scene) -> None:
+        """Make the folder, or clear what is to be overwritten, and write the scene with all defaults."""
+        if self.to_clear:
+            _clear(self.path)
+        self.path.mkdir(parents=True, exist_ok=True)
+        self.file(SCENE).write_text(dump_scene(scene))
+
 
 def open_folder(path: Path, scene: Scene, *, resume: bool, overwrite: bool) -> RunFolder:
-    """Make or take up the folder of a run.
+    """Look whether the folder of a run may be used or taken up.
 
     Raises
     ------
@@ -44,18 +55,14 @@ def open_folder(path: Path, scene: Scene, *, resume: bool, overwrite: bool) -> R
     if path.exists() and not path.is_dir():
         raise LeitoError(f"{path} is a file; give another folder with --out")
     holds = path.is_dir() and any(path.iterdir())
-    saved = None
     if holds and not (resume or overwrite):
         raise LeitoError(f"{path} holds a run already; go on with --resume, or start anew with --overwrite or --out")
+    saved = None
     if holds and resume:
         _require_same_scene(path, scene)
         if (path / checkpoint.NAME).exists():
             saved, _ = checkpoint.load(path / checkpoint.NAME)
-    elif holds:
-        _clear(path)
-    path.mkdir(parents=True, exist_ok=True)
-    (path / SCENE).write_text(dump_scene(scene))
-    return RunFolder(path, saved)
+    return RunFolder(path, saved, to_clear=holds and overwrite)
 
 
 def _clear(path: Path) -> None:

@@ -139,6 +139,14 @@ def test_nothing_is_overwritten(tube: Path) -> None:
     assert (tube / "history.csv").read_bytes() == before
 
 
+def test_a_scene_refused_when_built_leaves_no_trace(tube: Path) -> None:
+    out = tube.parent / "refused"
+    scene = load_scene(tube / "scene.toml", ["structure.tube.order=2"])
+    with pytest.raises(LeitoError, match="stiffness ratio r = .* above 2"):
+        run_scene(scene, out=out, progress=False)
+    assert not out.exists()
+
+
 def test_a_run_is_resumed_with_its_own_scene_only(tube: Path) -> None:
     other = load_scene(tube / "scene.toml", ["contact.friction=0.3"])
     with pytest.raises(LeitoError, match=r"contact.friction = 0.3 differs from 0.8"):
