@@ -23,7 +23,10 @@ def before(built: Built) -> list[str]:
             f"{stable_ratio(scene):g}, the limit on fixed partners: take a smaller time.step"
         )
     if scene.interface is not None and scene.interface.exchange == "lagged" and built.stiffness_ratio > 0.0:
-        said.append('interface.exchange = "lagged" feeds energy into the interface at any step; "predicted" does not')
+        said.append(
+            'interface.exchange = "lagged" takes k dt from every dashpot of the interface, which is unstable where '
+            'that is more than it has; "predicted" does not'
+        )
     damping = getattr(built.model.structure, "damping", None)  # an elastic structure alone may have it
     if damping is not None and damping.overdamped_above < math.inf:
         limit = damping.overdamped_above
