@@ -15,6 +15,7 @@ from particles.walls import Wall
 SMALLEST_SKIN, LARGEST_SKIN = 0.06, 0.5  # over the mean radius of the free grains
 STEPS_WANTED = 40  # between lists, at the speed of the fastest grain
 ONE_BLOCK = 2000  # free grains below which blocks do not pay
+LISTS_PER_SORT = 8  # in which a grain moves less than 2 radii
 
 
 class Level(NamedTuple):
@@ -66,15 +67,16 @@ class ContactList:
         """Square of the displacement at which the list must be made anew [m2]."""
         return (0.5 * self.skin) ** 2
 
-    def rebuild(self, grains: Grains, dt: float) -> None:
-        """Sort the free grains by cell, list near pairs and walls, carry the histories over."""
+    def rebuild(self, grains: Grains, dt: float, *, sort: bool = True) -> None:
+        """List near pairs and walls, carry the histories over; before, if asked, sort the free grains by cell."""
         self._require_finite(grains)
         first = len(self.pairs.start) == 1
         self.skin = choose_skin(grains, dt)
-        order = self._storage_order(grains)
-        grains.reorder(order)
+        old_of = np.arange(len(grains))
+        if sort:
+            old_of[: grains.n_free] = self._storage_order(grains)
+            grains.reorder(old_of[: grains.n_free])
         grains.x_listed[:], grains.y_listed[:] = grains.x, grains.y
-        old_of = np.concatenate([order, np.arange(grains.n_free, len(grains))])
         before, rows = self.pairs, cells.rows_of(self._near_pairs(grains), len(grains))
         self.pairs = self._pair_arrays(*rows, block_starts(grains.n_free, len(grains)))
         if first:
@@ -168,7 +170,8 @@ class ContactList:
         return PairArrays(
             start, owner, partner, **self._memory(len(partner)),
             crossing_start=crossing_start, crossing=np.zeros((int(crossing_start[-1]), 3)),
-            incoming_grain=incoming[0], incoming_start=incoming[1], incoming=incoming[2], incoming_block=incoming[3],
+            incoming_grain=incoming[0], incoming_start=incoming[1], incoming=incoming[2],
+            incoming_block=incoming[3], first_source=incoming[4],
         )  # fmt: skip
 
     def _wall_arrays(self, walls: list[Wall]) -> WallArrays:
@@ -213,6 +216,9 @@ class ContactList:
 
 def _levels(radius: np.ndarray) -> list[tuple[np.ndarray, float]]:
     """Grains by size, finest first: members and the largest radius of each level, at most twice the smallest."""
+    largest = float(radius.max())
+    if largest < 2.0 * radius.min():
+        return [(np.arange(len(radius)), largest)]
     level = np.floor(np.log2(radius / radius.min()) + 1e-12).astype(np.int64)
     found = [np.nonzero(level == k)[0] for k in np.unique(level)]
     return [(members, float(radius[members].max())) for members in found]

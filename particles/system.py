@@ -20,7 +20,7 @@ from particles.kernels.layout import (
     LedgerArrays,
 )
 from particles.kernels.motion import kick
-from particles.neighbours import ContactList, block_starts
+from particles.neighbours import LISTS_PER_SORT, ContactList, block_starts
 from particles.state import Grains
 from particles.walls import Wall
 
@@ -144,7 +144,7 @@ class ParticleSystem:
             arrays, listed = self._arrays(), self.list
             done, drifted = step(
                 arrays, listed.pairs, listed.walls, self.gravity, *laws, damping, self.ledger,
-                bool(drifted), listed.reach2, left, self.time_step,
+                bool(drifted), listed.reach2, left, self.time_step, self.threads if threaded else 1,
             )  # fmt: skip
             left -= done
             self.steps_done += done
@@ -153,7 +153,7 @@ class ParticleSystem:
             self._rebuild()
 
     def _rebuild(self) -> None:
-        self.list.rebuild(self.grains, self.time_step)
+        self.list.rebuild(self.grains, self.time_step, sort=self.rebuilds % LISTS_PER_SORT == 0)
         self.rebuilds += 1
 
     def _arrays(self) -> GrainArrays:

@@ -67,33 +67,45 @@ def _forces(grains, pairs, walls, normal, tangential, rolling, ledger, dt):
         add_incoming(b, grains, pairs, tangential is not None)
 
 
-def _advance(grains, pairs, walls, gravity, normal, tangential, rolling, damping, ledger, drifted, reach2, steps, dt):
+def _advance(
+    grains, pairs, walls, gravity, normal, tangential, rolling, damping, ledger, drifted, reach2, steps, dt, teams
+):
     """Up to `steps` leapfrog steps: drift, contact forces, kick.
 
     Returns the number of steps done, and 1 if the list went stale: then the grains have drifted
     into the next step and wait for a new list (`drifted` at the next call). The kick of a step and
-    the drift of the next are one sweep. Blocks go backwards, so that the small prescribed one
-    falls to the thread that gets one block more than the others.
+    the drift of the next follow the forces of the same block while it is in the cache: contacts
+    with earlier blocks are done by then, and no later block looks back. Only a block that gets
+    forces from the blocks of another team waits for the second loop.
     """
     n_blocks = grains.block_start.shape[0] - 1
     if grains.block_start[n_blocks] == grains.block_start[n_blocks - 1]:
         n_blocks -= 1  # nothing is prescribed
-    last = n_blocks - 1
+    source = pairs.first_source
     gravity_x, gravity_y = gravity[0], gravity[1]
     stale = np.zeros(n_blocks, np.int64)
     if steps > 0 and not drifted:
-        for q in numba.prange(n_blocks):
-            stale[last - q] = block_drift(last - q, grains, tangential, ledger, reach2, dt)
+        for b in numba.prange(n_blocks):
+            stale[b] = block_drift(b, grains, tangential, ledger, reach2, dt)
         if move_walls(walls, reach2, dt) or stale.any():
             return 0, 1
     for step in range(steps):
         drifts = step + 1 < steps
-        for q in numba.prange(n_blocks):
-            block_forces(last - q, grains, pairs, walls, normal, tangential, rolling, ledger, dt)
-        for q in numba.prange(n_blocks):
-            stale[last - q] = block_motion(
-                last - q, grains, pairs, gravity_x, gravity_y, tangential, damping, ledger, reach2, drifts, dt
-            )
+        for team in numba.prange(teams):
+            first = team * n_blocks // teams
+            for b in range(first, (team + 1) * n_blocks // teams):
+                block_forces(b, grains, pairs, walls, normal, tangential, rolling, ledger, dt)
+                if source[b] >= first:
+                    stale[b] = block_motion(
+                        b, grains, pairs, gravity_x, gravity_y, tangential, damping, ledger, reach2, drifts, dt
+                    )
+        for team in numba.prange(teams):
+            first = team * n_blocks // teams
+            for b in range(first, (team + 1) * n_blocks // teams):
+                if source[b] < first:
+                    stale[b] = block_motion(
+                        b, grains, pairs, gravity_x, gravity_y, tangential, damping, ledger, reach2, drifts, dt
+                    )
         if drifts and (move_walls(walls, reach2, dt) or stale.any()):
             return step + 1, 1
     return steps, 0

@@ -48,24 +48,28 @@ def pairs_within(x, y, radius, body, skin, grid, order, cell_start, found, count
     Sorted by columns, the following partners of a grain stand in two runs: the rest of its column
     up to the next row, and three rows of the next column. Nothing is written beyond the capacity.
     """
-    for a in range(order.shape[0]):
-        i = order[a]
-        c = cell_of(x[i], y[i], grid)
-        column, row = c // grid.rows, c % grid.rows
-        low, high = max(row - 1, 0), min(row + 1, grid.rows - 1)
-        begin, end = a + 1, cell_start[column * grid.rows + high + 1]
-        for run in range(2):
-            for b in range(begin, end):
-                if may_touch(i, order[b], x, y, radius, body, skin):
-                    if count < found.shape[0]:
-                        found[count, 0], found[count, 1] = min(i, order[b]), max(i, order[b])
-                    count += 1
-            if run == 0 and column + 1 < grid.columns:
-                begin = cell_start[(column + 1) * grid.rows + low]
-                end = cell_start[(column + 1) * grid.rows + high + 1]
-            else:
-                begin = end = 0
-    return count
+    xs, ys, reach_of = x[order], y[order], radius[order] + 0.5 * skin
+    rows, free = np.uint64(grid.rows), np.uint64(count)
+    for c in range(np.uint64(cell_start.shape[0] - 1)):
+        row = c % rows
+        low, high = row - min(row, np.uint64(1)), min(row + np.uint64(1), rows - np.uint64(1))
+        column_end = np.uint64(cell_start[c - row + high + np.uint64(1)])
+        begin = end = np.uint64(0)
+        if c - row + rows < np.uint64(cell_start.shape[0] - 1):
+            begin = np.uint64(cell_start[c - row + rows + low])
+            end = np.uint64(cell_start[c - row + rows + high + np.uint64(1)])
+        for a in range(np.uint64(cell_start[c]), np.uint64(cell_start[c + np.uint64(1)])):
+            for run in range(2):
+                first, last = (begin, end) if run else (a + np.uint64(1), column_end)
+                for b in range(first, last):
+                    dx, dy, reach = xs[b] - xs[a], ys[b] - ys[a], reach_of[b] + reach_of[a]
+                    if dx * dx + dy * dy < reach * reach:
+                        i, j = order[a], order[b]
+                        if body[i] != body[j] or body[i] < 0:
+                            if free < np.uint64(found.shape[0]):
+                                found[free, 0], found[free, 1] = min(i, j), max(i, j)
+                            free += np.uint64(1)
+    return np.int64(free)
 
 
 @kernel
@@ -176,7 +180,7 @@ def carry_walls(old_of, n_free, old_grain, old_wall, old_history, grain, wall, h
 def list_crossings(block_start, start, partner):
     """Contacts whose partner lies in a later block, by owner's block and by partner.
 
-    Returns crossing_start, incoming_grain, incoming_start, incoming, incoming_block.
+    Returns crossing_start, incoming_grain, incoming_start, incoming, incoming_block, first_source.
     """
     n, n_blocks = start.shape[0] - 1, block_start.shape[0] - 1
     crossing_start = np.zeros(n_blocks + 1, np.int64)
@@ -194,6 +198,7 @@ def list_crossings(block_start, start, partner):
         incoming_start[a + 1] = incoming_start[a] + hits[incoming_grain[a] + 1]
         hits[incoming_grain[a]] = incoming_start[a]
     incoming = np.empty(crossing_start[n_blocks], np.int64)
+    first_source = np.arange(n_blocks)
     number = 0
     for b in range(n_blocks):
         for k in range(start[block_start[b]], start[block_start[b + 1]]):
@@ -201,5 +206,7 @@ def list_crossings(block_start, start, partner):
                 incoming[hits[partner[k]]] = number
                 hits[partner[k]] += 1
                 number += 1
+                target = np.searchsorted(block_start, partner[k], side="right") - 1
+                first_source[target] = min(first_source[target], b)
     incoming_block = np.searchsorted(incoming_grain, block_start)
-    return crossing_start, incoming_grain, incoming_start, incoming, incoming_block
+    return crossing_start, incoming_grain, incoming_start, incoming, incoming_block, first_source

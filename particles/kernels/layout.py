@@ -70,6 +70,7 @@ class PairArrays(NamedTuple):
     incoming_start: Array  # (n_incoming + 1,)
     incoming: Array  # (n_crossing,) numbers in `crossing`
     incoming_block: Array  # (n_blocks + 1,) first of `incoming_grain` in each block
+    first_source: Array  # (n_blocks,) first block that leaves forces on this one, or itself
 
 
 class WallArrays(NamedTuple):
