@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from particles.contact import ContactModel
+from particles.contact import Contact
 from particles.errors import ParticleError
 from particles.kernels import cells
 from particles.kernels.layout import Grid, PairArrays, WallArrays
@@ -47,14 +47,14 @@ class ContactList:
 
     Parameters
     ----------
-    contact : ContactModel
+    contact : ContactModel or ContactTable
         Decides which histories are kept.
     walls : list of Wall
     ledger : bool
         Whether the dashpot forces of the last step are kept for the energy ledger.
     """
 
-    def __init__(self, contact: ContactModel, walls: list[Wall], *, ledger: bool) -> None:
+    def __init__(self, contact: Contact, walls: list[Wall], *, ledger: bool) -> None:
         self.contact = contact
         self.ledger = ledger
         self.skin = 0.0
@@ -119,7 +119,7 @@ class ContactList:
             if group == "walls":
                 if len(arrays["px"]) != len(own.px):
                     continue
-                arrays |= {name: getattr(own, name) for name in ("px", "py", "nx", "ny", "vx", "vy")}
+                arrays |= {name: getattr(own, name) for name in ("px", "py", "nx", "ny", "vx", "vy", "material")}
             else:
                 more = n + 1 - len(arrays["start"])
                 arrays["start"] = np.append(arrays["start"], np.full(more, arrays["start"][-1]))
@@ -162,7 +162,9 @@ class ContactList:
         return {
             "spring": np.zeros(slots if self.contact.spins else 0),
             "moment": np.zeros(slots if self.contact.rolls else 0),
-            **{name: np.zeros(slots if self.ledger else 0) for name in ("dash_n", "dash_t", "dash_r")},
+            "dash_n": np.zeros(slots if self.ledger else 0),
+            "dash_t": np.zeros(slots if self.ledger else 0),
+            "dash_r": np.zeros(slots if self.ledger and self.contact.damps_rolling else 0),
         }
 
     def _pair_arrays(self, start: np.ndarray, owner: np.ndarray, partner: np.ndarray, blocks: np.ndarray) -> PairArrays:
@@ -185,6 +187,7 @@ class ContactList:
             "ny": normal[:, 1].copy(),
             "vx": velocity[:, 0].copy(),
             "vy": velocity[:, 1].copy(),
+            "material": np.array([w.material for w in walls], np.int64),
             "px_listed": point[:, 0].copy(),
             "py_listed": point[:, 1].copy(),
         }

@@ -11,6 +11,7 @@ from particles.errors import ParticleError, require
 
 Floats = NDArray[np.float64]
 FREE = -1
+WHOLE_NUMBERS = ("n_free", "body", "number", "material")
 
 
 @dataclass(kw_only=True)
@@ -19,8 +20,8 @@ class Grains:
 
     All arrays have shape (n,). SI units per unit thickness: m, m/s, rad, rad/s, kg/m, kg m, N/m;
     counter-clockwise positive. Free grains are reordered in memory while they move; `number` is
-    the place a grain had at the beginning, and `body` is -1 for a free grain or the number of the
-    prescribed body that carries it. Between calls of `ParticleSystem.advance` positions and forces
+    the place a grain had at the beginning, `body` is -1 for a free grain or the number of the
+    prescribed body that carries it, and `material` the row of a `ContactTable`, 0 without one. Between calls of `ParticleSystem.advance` positions and forces
     belong to the present time, velocities to half a step later.
     """
 
@@ -40,6 +41,7 @@ class Grains:
     inverse_mass: Floats
     inverse_inertia: Floats
     roll_compliance: Floats
+    material: NDArray[np.int32]
     x_listed: Floats
     y_listed: Floats
     body: NDArray[np.int32]
@@ -54,21 +56,25 @@ class Grains:
         *,
         velocity: ArrayLike = 0.0,
         spin: ArrayLike = 0.0,
+        material: ArrayLike = 0,
     ) -> "Grains":
         """Free discs at `position` (n, 2) [m], `radius` (n,) or one [m], `density` [kg/m3].
 
         Mass ``pi r^2 rho`` [kg/m], inertia ``m r^2 / 2`` [kg m]; `velocity` (n, 2) [m/s], `spin`
-        (n,) [rad/s].
+        (n,) [rad/s], `material` (n,) the rows of a `ContactTable`.
         """
         place = np.atleast_2d(np.asarray(position, float)).reshape(-1, 2)
         n = len(place)
-        zeros = {f.name: np.zeros(n) for f in fields(cls) if f.name not in ("n_free", "body", "number")}
-        grains = cls(n_free=n, body=np.full(n, FREE, np.int32), number=np.arange(n, dtype=np.int64), **zeros)
+        zeros = {f.name: np.zeros(n) for f in fields(cls) if f.name not in WHOLE_NUMBERS}
+        grains = cls(
+            n_free=n, body=np.full(n, FREE, np.int32), number=np.arange(n), material=np.zeros(n, np.int32), **zeros
+        )
         grains.x[:], grains.y[:] = place.T
         grains.radius[:] = radius
         speed = np.broadcast_to(np.asarray(velocity, float), (n, 2))
         grains.vx[:], grains.vy[:] = speed.T
         grains.omega[:] = spin
+        grains.material[:] = material
         grains.mass[:] = np.pi * grains.radius**2 * np.asarray(density, float)
         grains._check()
         grains.inertia[:] = 0.5 * grains.mass * grains.radius**2
@@ -83,14 +89,15 @@ class Grains:
         arrays = {f.name: np.array(saved[f"grains.{f.name}"][:n_free]) for f in fields(cls) if f.name != "n_free"}
         return cls(n_free=n_free, **arrays)
 
-    def with_prescribed(self, position: ArrayLike, radius: ArrayLike, body: int) -> "Grains":
+    def with_prescribed(self, position: ArrayLike, radius: ArrayLike, body: int, *, material: int = 0) -> "Grains":
         """These grains and the discs of one more prescribed body (no mass: they are not integrated)."""
         place = np.asarray(position, float).reshape(-1, 2)
         n = len(place)
-        more = {f.name: np.zeros(n) for f in fields(self) if f.name not in ("n_free", "body", "number")}
+        more = {f.name: np.zeros(n) for f in fields(self) if f.name not in WHOLE_NUMBERS}
         more["x"], more["y"] = place[:, 0].copy(), place[:, 1].copy()
         more["radius"] = np.broadcast_to(np.asarray(radius, float), (n,)).copy()
         more["body"] = np.full(n, body, np.int32)
+        more["material"] = np.full(n, material, np.int32)
         more["number"] = np.arange(len(self.x), len(self.x) + n, dtype=np.int64)
         both = {name: np.concatenate([getattr(self, name), array]) for name, array in more.items()}
         grains = Grains(n_free=self.n_free, **both)

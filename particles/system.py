@@ -8,7 +8,7 @@ import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from particles.contact import ContactModel, GlobalDamping
+from particles.contact import Contact, ContactTable, GlobalDamping
 from particles.errors import ParticleError, require
 from particles.kernels import advance as stepping
 from particles.kernels import energy as looking
@@ -56,7 +56,7 @@ class ParticleSystem:
     ----------
     grains : Grains
         Taken over and reordered in memory.
-    contact : ContactModel
+    contact : ContactModel or ContactTable
     time_step : float
         dt [s].
     walls : sequence of Wall
@@ -77,7 +77,7 @@ class ParticleSystem:
     def __init__(
         self,
         grains: Grains,
-        contact: ContactModel,
+        contact: Contact,
         *,
         time_step: float,
         walls: Sequence[Wall] = (),
@@ -89,6 +89,9 @@ class ParticleSystem:
         require("time step", time_step, above=0.0)
         if len(grains) == 0:
             raise ParticleError("a particle system needs at least one grain")
+        most = max(int(grains.material.max()), max((wall.material for wall in walls), default=0))
+        if isinstance(contact, ContactTable) and most >= contact.materials:
+            raise ParticleError(f"material {most} has no row in the table of {contact.materials} contact laws: add it")
         self.grains = grains
         self.contact = contact
         self.time_step = float(time_step)
@@ -119,11 +122,11 @@ class ParticleSystem:
         if self._started:
             return
         self._rebuild()
-        arrays, laws = self._arrays(), self._laws()
+        arrays, laws = self._arrays(), self.contact.numbers()
         stepping.forces(arrays, self.list.pairs, self.list.walls, *laws, None, 0.0)
         half = 0.5 * self.time_step
         for block in range(len(self.blocks) - 2):
-            kick(block, arrays, *self.gravity, laws[1], self._damping(), self.ledger, half)
+            kick(block, arrays, *self.gravity, self.contact.spins, self._damping(), self.ledger, half)
         if self.ledger is not None:
             ahead = 2.0 * self.ledger.loss[:, DAMPING_AHEAD].copy()
             self.ledger.loss[:] = 0.0
@@ -138,7 +141,7 @@ class ParticleSystem:
         step = stepping.advance_threaded if threaded else stepping.advance
         if threaded:
             numba.set_num_threads(self.threads)  # global: another system may have set its own
-        laws, damping, drifted = self._laws(), self._damping(), False
+        laws, damping, drifted = self.contact.numbers(), self._damping(), False
         left = int(steps)
         while True:
             arrays, listed = self._arrays(), self.list
@@ -160,16 +163,8 @@ class ParticleSystem:
         g = self.grains
         return GrainArrays(
             g.x, g.y, g.theta, g.vx, g.vy, g.omega, g.fx, g.fy, g.torque, g.radius, g.mass, g.inertia,
-            g.inverse_mass, g.inverse_inertia, g.roll_compliance, g.x_listed, g.y_listed, self.impulse, self.blocks,
+            g.inverse_mass, g.inverse_inertia, g.roll_compliance, g.material, g.x_listed, g.y_listed, self.impulse, self.blocks,
         )  # fmt: skip
-
-    def _laws(self) -> tuple[Any, Any, Any]:
-        model = self.contact
-        return (
-            model.normal.numbers(),
-            None if model.tangential is None else model.tangential.numbers(),
-            None if model.rolling is None else model.rolling.numbers(),
-        )
 
     def _damping(self) -> Any:
         return None if self.damping is None else self.damping.numbers()
@@ -214,7 +209,7 @@ class ParticleSystem:
         n = len(self.grains)
         overlap, contacts = np.zeros(n), np.zeros(n, np.int64)
         numbers = looking.look_at_contacts(
-            self._arrays(), self.list.pairs, self.list.walls, *self._laws(), overlap, contacts
+            self._arrays(), self.list.pairs, self.list.walls, self.contact.numbers(), overlap, contacts
         )
         return ContactLook(*numbers, overlap, contacts)
 
@@ -226,7 +221,7 @@ class ParticleSystem:
         """
         look = look or self.look()
         kinetic, rotational, potential = looking.kinetic_energy(
-            self._arrays(), self.grains.n_free, *self.gravity, self._laws()[1], self._damping(), self.time_step
+            self._arrays(), self.grains.n_free, *self.gravity, self.contact.spins, self._damping(), self.time_step
         )
         energies = {
             "kinetic": kinetic, "rotational": rotational, "gravity": potential,
@@ -307,9 +302,7 @@ class ParticleSystem:
             self.ledger.prescribed_work[:] = saved["prescribed_work"]
 
 
-def continued(
-    saved: Mapping[str, NDArray[Any]], grains: Grains, contact: ContactModel, **options: Any
-) -> ParticleSystem:
+def continued(saved: Mapping[str, NDArray[Any]], grains: Grains, contact: Contact, **options: Any) -> ParticleSystem:
     """A system that takes the free grains and contacts of a saved one and has prescribed grains of its own.
 
     Parameters

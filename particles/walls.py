@@ -22,6 +22,8 @@ class Wall:
         Towards the grains; normalised here.
     velocity : (2,) floats
         Constant velocity of the wall [m/s].
+    material : int
+        Row of a `ContactTable`.
     name : str
         For messages and tables.
     """
@@ -29,6 +31,7 @@ class Wall:
     point: tuple[float, float]
     normal: tuple[float, float]
     velocity: tuple[float, float] = (0.0, 0.0)
+    material: int = 0
     name: str = "wall"
 
     def __post_init__(self) -> None:

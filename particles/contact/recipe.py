@@ -35,15 +35,18 @@ def damping_from_restitution(*, restitution: float, effective_mass: float, stiff
     """
     require("effective mass", effective_mass, above=0.0)
     require("stiffness", stiffness, above=0.0)
+    return 2.0 * damping_ratio(restitution, may_pull=may_pull) * math.sqrt(effective_mass * stiffness)
+
+
+def damping_ratio(restitution: float, *, may_pull: bool) -> float:
+    """Dashpot over critical dashpot at which a contact rebounds with `restitution`, above 0 and not above 1."""
     if not 0.0 < restitution <= 1.0:
         raise ParticleError(f"restitution = {restitution:g} must lie above 0 and not above 1")
     if restitution == 1.0:
         return 0.0
     if may_pull:
-        ratio = -math.log(restitution) / math.hypot(math.log(restitution), math.pi)
-    else:
-        ratio = _ratio_without_tension(restitution)
-    return 2.0 * ratio * math.sqrt(effective_mass * stiffness)
+        return -math.log(restitution) / math.hypot(math.log(restitution), math.pi)
+    return _ratio_without_tension(restitution)
 
 
 def restitution_with_tension(damping_ratio: float) -> float:

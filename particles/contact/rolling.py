@@ -1,9 +1,10 @@
-"""Rolling contact: elastic-plastic spring and dashpot."""
+"""Rolling contact: elastic-plastic spring and dashpot, or a constant torque."""
 
 from dataclasses import dataclass
 
 from particles.errors import require
-from particles.kernels import layout
+from particles.kernels.laws import rolling as laws
+from particles.kernels.laws.rolling import ConstantRolling, DampedRolling
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +47,40 @@ class ElasticPlasticRolling:
         if self.stiffness is not None:
             require("rolling stiffness", self.stiffness, above=0.0)
 
-    def numbers(self) -> layout.ElasticPlasticRolling:
-        return layout.ElasticPlasticRolling(
-            float(self.friction), float(self.damping_ratio), float(self.stiffness or 0.0)
-        )
+    def numbers(self) -> laws.ElasticPlasticRolling | DampedRolling:
+        spring = (float(self.friction), float(self.stiffness or 0.0))
+        if self.damping_ratio > 0.0:
+            return DampedRolling(*spring, float(self.damping_ratio))
+        return laws.ElasticPlasticRolling(*spring)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConstantTorqueRolling:
+    """Rolling resistance by the limit moment against any rolling (type A).
+
+    ``M = - mu_r R_r |F_n| sign(omega_r)`` on i, ``-M`` on j, zero when nothing rolls. It stops
+    rolling grains but holds none: at rest the moment changes its sign from step to step, and on a
+    slope grains creep. For quasi-static beds take `ElasticPlasticRolling`.
+
+    Parameters
+    ----------
+    friction : float
+        mu_r [-], >= 0.
+
+    Notes
+    -----
+    ``omega_r = omega_i - omega_j`` [rad/s], ``R_r = r_i r_j / (r_i + r_j)`` (a wall: r_i).
+
+    Raises
+    ------
+    ParticleError
+        If the number is not finite or negative.
+    """
+
+    friction: float
+
+    def __post_init__(self) -> None:
+        require("rolling friction", self.friction, at_least=0.0)
+
+    def numbers(self) -> ConstantRolling:
+        return ConstantRolling(float(self.friction))

@@ -5,14 +5,17 @@ import numpy as np
 
 from particles.kernels.forces import clear_forces, pair_forces, wall_forces
 from particles.kernels.jit import kernel, threaded_kernel
+from particles.kernels.laws.response import Laws
+from particles.kernels.laws.tangential import present
 from particles.kernels.motion import add_incoming, drift, kick, prescribed_work
 
 
 @kernel
 def block_forces(b, grains, pairs, walls, normal, tangential, rolling, ledger, dt):
+    laws = Laws(normal, tangential, rolling)  # numba's threads take tuples, but no tuples of tuples
     clear_forces(b, grains)
-    pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt)
-    wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt)
+    pair_forces(b, grains, pairs, laws, ledger, dt)
+    wall_forces(b, grains, walls, laws, ledger, dt)
 
 
 @kernel
@@ -29,11 +32,11 @@ def receive(b, grains, ledger, dt):
 @kernel
 def block_motion(b, grains, pairs, gravity_x, gravity_y, tangential, damping, ledger, reach2, drifts, dt):
     """Kick block `b` (the prescribed one receives instead) and drift it into the next step if there is one."""
-    add_incoming(b, grains, pairs, tangential is not None)
+    add_incoming(b, grains, pairs, present(tangential))
     if b == grains.block_start.shape[0] - 2:
         receive(b, grains, ledger, dt)
     else:
-        kick(b, grains, gravity_x, gravity_y, tangential, damping, ledger, dt)
+        kick(b, grains, gravity_x, gravity_y, present(tangential), damping, ledger, dt)
     if drifts:
         return block_drift(b, grains, tangential, ledger, reach2, dt)
     return 0
@@ -43,7 +46,7 @@ def block_motion(b, grains, pairs, gravity_x, gravity_y, tangential, damping, le
 def block_drift(b, grains, tangential, ledger, reach2, dt):
     if ledger is not None and b == grains.block_start.shape[0] - 2:
         prescribed_work(b, grains, ledger, dt)
-    return drift(b, grains, tangential is not None, reach2, dt)
+    return drift(b, grains, present(tangential), reach2, dt)
 
 
 @kernel
@@ -64,7 +67,7 @@ def _forces(grains, pairs, walls, normal, tangential, rolling, ledger, dt):
     for b in numba.prange(n_blocks):
         block_forces(b, grains, pairs, walls, normal, tangential, rolling, ledger, dt)
     for b in numba.prange(n_blocks):
-        add_incoming(b, grains, pairs, tangential is not None)
+        add_incoming(b, grains, pairs, present(tangential))
 
 
 def _advance(

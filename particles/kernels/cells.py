@@ -147,6 +147,7 @@ def carry_pairs(old_of, old_start, old_partner, old_history, start, partner, his
                     if dash_n.shape[0]:
                         dash_n[k] = old_dash_n[slot]
                         dash_t[k] = old_dash_t[slot]
+                    if dash_r.shape[0]:
                         dash_r[k] = sign * old_dash_r[slot]
                     break
 
@@ -171,6 +172,7 @@ def carry_walls(old_of, n_free, old_grain, old_wall, old_history, grain, wall, h
                 if dash_n.shape[0]:
                     dash_n[k] = old_dash_n[slot]
                     dash_t[k] = old_dash_t[slot]
+                if dash_r.shape[0]:
                     dash_r[k] = old_dash_r[slot]
                 break
             slot += 1

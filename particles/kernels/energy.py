@@ -3,23 +3,26 @@
 import math
 
 from particles.kernels.jit import kernel
-from particles.kernels.laws import rolling_stiffness
+from particles.kernels.laws.materials import of_pair
+from particles.kernels.laws.normal import normal_energy, normal_stiffness
+from particles.kernels.laws.rolling import rolling_stiffness, turns_spring
+from particles.kernels.laws.tangential import present, tangential_stiffness
 
 
 @kernel
-def stored(normal, tangential, rolling, delta, f, m, r_r):
+def stored(laws, delta, f, m, r_eff):
     """Elastic energy of one contact in its normal, tangential and rolling springs."""
-    normal_energy = 0.5 * normal.k_n * delta * delta
-    tangential_energy = rolling_energy = 0.0
-    if tangential is not None:
-        tangential_energy = 0.5 * f * f / tangential.k_t
-        if rolling is not None:
-            rolling_energy = 0.5 * m * m / rolling_stiffness(rolling, tangential.k_t, r_r)
-    return normal_energy, tangential_energy, rolling_energy
+    k_t = tangential_stiffness(laws.tangential, normal_stiffness(laws.normal, delta, r_eff))
+    energy_t = energy_r = 0.0
+    if f != 0.0:
+        energy_t = 0.5 * f * f / k_t
+    if m != 0.0:
+        energy_r = 0.5 * m * m / rolling_stiffness(laws.rolling, k_t, r_eff)
+    return normal_energy(laws.normal, delta, r_eff), energy_t, energy_r
 
 
 @kernel
-def look_at_contacts(grains, pairs, walls, normal, tangential, rolling, overlap, contacts):
+def look_at_contacts(grains, pairs, walls, laws, overlap, contacts):
     """Fill `overlap` (sum per grain [m]) and `contacts` (count per grain).
 
     Returns the energies of the three springs, the number of contacts, the largest overlap over
@@ -36,12 +39,12 @@ def look_at_contacts(grains, pairs, walls, normal, tangential, rolling, overlap,
             delta = reach - math.hypot(grains.x[j] - grains.x[i], grains.y[j] - grains.y[i])
             if delta > 0.0:
                 f = m = 0.0
-                if tangential is not None:
+                if present(laws.tangential):
                     f = pairs.spring[k]
-                if rolling is not None:
+                if turns_spring(laws.rolling):
                     m = pairs.moment[k]
                 r_r = grains.radius[i] * grains.radius[j] / reach
-                e_n, e_t, e_r = stored(normal, tangential, rolling, delta, f, m, r_r)
+                e_n, e_t, e_r = stored(of_pair(laws, grains.material[i], grains.material[j]), delta, f, m, r_r)
                 energy_n, energy_t, energy_r = energy_n + e_n, energy_t + e_t, energy_r + e_r
                 overlap[i] += delta
                 overlap[j] += delta
@@ -57,11 +60,11 @@ def look_at_contacts(grains, pairs, walls, normal, tangential, rolling, overlap,
         delta = grains.radius[i] - gap
         if delta > 0.0:
             f = m = 0.0
-            if tangential is not None:
+            if present(laws.tangential):
                 f = walls.spring[k]
-            if rolling is not None:
+            if turns_spring(laws.rolling):
                 m = walls.moment[k]
-            e_n, e_t, e_r = stored(normal, tangential, rolling, delta, f, m, grains.radius[i])
+            e_n, e_t, e_r = stored(of_pair(laws, grains.material[i], walls.material[w]), delta, f, m, grains.radius[i])
             energy_n, energy_t, energy_r = energy_n + e_n, energy_t + e_t, energy_r + e_r
             overlap[i] += delta
             contacts[i] += 1
@@ -72,7 +75,7 @@ def look_at_contacts(grains, pairs, walls, normal, tangential, rolling, overlap,
 
 
 @kernel
-def kinetic_energy(grains, n_free, gravity_x, gravity_y, tangential, damping, dt):
+def kinetic_energy(grains, n_free, gravity_x, gravity_y, spins, damping, dt):
     """m v(n-1/2) v(n+1/2) / 2 of the free grains, translation and rotation, and their potential."""
     alpha_t = alpha_r = translation = rotation = potential = 0.0
     if damping is not None:
@@ -83,7 +86,7 @@ def kinetic_energy(grains, n_free, gravity_x, gravity_y, tangential, damping, dt
         before_y = (grains.vy[i] - dt * (grains.fy[i] / m + gravity_y)) / (1.0 - dt * alpha_t)
         translation += 0.5 * m * (before_x * grains.vx[i] + before_y * grains.vy[i])
         potential -= m * (gravity_x * grains.x[i] + gravity_y * grains.y[i])
-        if tangential is not None:
+        if spins:
             before = (grains.omega[i] - dt * grains.torque[i] / grains.inertia[i]) / (1.0 - dt * alpha_r)
             rotation += 0.5 * grains.inertia[i] * before * grains.omega[i]
     return translation, rotation, potential

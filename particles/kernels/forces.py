@@ -5,8 +5,12 @@ import math
 import numpy as np
 
 from particles.kernels.jit import kernel
-from particles.kernels.layout import NOTHING_LOST, WALL_WORK, Meeting, Memory
-from particles.kernels.touch import add_losses, touch
+from particles.kernels.laws.materials import of_pair
+from particles.kernels.laws.response import Meeting
+from particles.kernels.laws.rolling import turns_dashpot, turns_spring
+from particles.kernels.laws.tangential import present
+from particles.kernels.layout import WALL_WORK
+from particles.kernels.touch import NOTHING_LOST, Memory, add_losses, touch
 
 
 @kernel
@@ -19,32 +23,37 @@ def clear_forces(b, grains):
 
 
 @kernel
-def pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt):
+def pair_forces(b, grains, pairs, laws, ledger, dt):
     """Forces of the pairs that block `b` owns (model 1.1, 1.2; lever arms to mid-overlap).
 
     One flat loop with unsigned indices: signed ones are wrapped around at every access.
     """
     last = grains.block_start[b + 1]
     x, y, vx, vy, omega = grains.x, grains.y, grains.vx, grains.vy, grains.omega
-    radius, compliance = grains.radius, grains.roll_compliance
+    radius, compliance, inverse_mass = grains.radius, grains.roll_compliance, grains.inverse_mass
+    material = grains.material
     fx, fy, torque = grains.fx, grains.fy, grains.torque
     owner, partner, spring, moment = pairs.owner, pairs.partner, pairs.spring, pairs.moment
     crossing, cross = pairs.crossing, np.uint64(pairs.crossing_start[b])
     dash_n, dash_t, dash_r = pairs.dash_n, pairs.dash_t, pairs.dash_r
+    spins, remembers = present(laws.tangential), turns_spring(laws.rolling)
+    damps = ledger is not None and turns_dashpot(laws.rolling)
     lost = NOTHING_LOST
     for k in range(np.uint64(pairs.start[grains.block_start[b]]), np.uint64(pairs.start[last])):
         i, j = owner[k], partner[k]
         dx, dy, reach = x[j] - x[i], y[j] - y[i], radius[i] + radius[j]
         d2 = dx * dx + dy * dy
         f_old = m_old = d_n = d_t = d_r = 0.0
-        if tangential is not None:
+        if spins:
             f_old = spring[k]
-        if rolling is not None:
+        if remembers:
             m_old = moment[k]
         if ledger is not None:
-            d_n, d_t, d_r = dash_n[k], dash_t[k], dash_r[k]
+            d_n, d_t = dash_n[k], dash_t[k]
+        if damps:
+            d_r = dash_r[k]
         touching = d2 < reach * reach
-        if not (touching or f_old != 0.0 or m_old != 0.0 or d_n != 0.0):
+        if not (touching or f_old != 0.0 or m_old != 0.0 or d_n != 0.0 or d_r != 0.0):
             if j >= last:
                 crossing[cross, 0] = crossing[cross, 1] = crossing[cross, 2] = 0.0
                 cross += np.uint64(1)
@@ -54,46 +63,54 @@ def pair_forces(b, grains, pairs, normal, tangential, rolling, ledger, dt):
         nx, ny, delta = dx * inverse, dy * inverse, reach - d
         ux, uy = vx[j] - vx[i], vy[j] - vy[i]
         arm_i = arm_j = v_t = omega_r = 0.0
-        if tangential is not None:
+        if spins:
             arm_i, arm_j = radius[i] - 0.5 * delta, radius[j] - 0.5 * delta
             v_t = uy * nx - ux * ny - (arm_i * omega[i] + arm_j * omega[j])
             omega_r = omega[i] - omega[j]
-        r_r = radius[i] * radius[j] / reach
-        meeting = Meeting(delta, ux * nx + uy * ny, v_t, omega_r, r_r, compliance[i] + compliance[j])
+        meeting = Meeting(
+            delta, ux * nx + uy * ny, v_t, omega_r, radius[i] * radius[j] / reach,
+            inverse_mass[i] + inverse_mass[j], compliance[i] + compliance[j],
+        )  # fmt: skip
+        pair_laws = of_pair(laws, material[i], material[j])
         memory = Memory(f_old, m_old, d_n, d_t, d_r)
-        response, lost = touch(touching, normal, tangential, rolling, ledger, meeting, memory, lost, dt)
-        if tangential is not None:
+        response, lost = touch(touching, pair_laws, ledger, meeting, memory, lost, dt)
+        if spins:
             spring[k] = response.spring
-        if rolling is not None:
+        if remembers:
             moment[k] = response.moment
         if ledger is not None:
-            dash_n[k], dash_t[k], dash_r[k] = response.dash_n, response.dash_t, response.dash_r
+            dash_n[k], dash_t[k] = response.dash_n, response.dash_t
+        if damps:
+            dash_r[k] = response.dash_r
         px = -response.f_n * nx - response.f_t * ny
         py = -response.f_n * ny + response.f_t * nx
         tj = arm_j * response.f_t - response.m_t
         fx[i] += px
         fy[i] += py
-        if tangential is not None:
+        if spins:
             torque[i] += arm_i * response.f_t + response.m_t
         if j < last:
             fx[j] -= px
             fy[j] -= py
-            if tangential is not None:
+            if spins:
                 torque[j] += tj
         else:
             crossing[cross, 0], crossing[cross, 1], crossing[cross, 2] = -px, -py, tj
             cross += np.uint64(1)
-    add_losses(b, tangential, ledger, lost, dt)
+    add_losses(b, ledger, lost, dt)
 
 
 @kernel
-def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
+def wall_forces(b, grains, walls, laws, ledger, dt):
     """Forces of the walls on block `b`: the same laws, the wall as a body of infinite mass."""
     px, py, wnx, wny, wvx, wvy = walls.px, walls.py, walls.nx, walls.ny, walls.vx, walls.vy
     x, y, vx, vy, omega = grains.x, grains.y, grains.vx, grains.vy, grains.omega
-    radius, compliance = grains.radius, grains.roll_compliance
+    radius, compliance, inverse_mass = grains.radius, grains.roll_compliance, grains.inverse_mass
+    material = grains.material
     spring, moment, force = walls.spring, walls.moment, walls.force
     dash_n, dash_t, dash_r = walls.dash_n, walls.dash_t, walls.dash_r
+    spins, remembers = present(laws.tangential), turns_spring(laws.rolling)
+    damps = ledger is not None and turns_dashpot(laws.rolling)
     lost = NOTHING_LOST
     wall_work(b, walls, ledger, dt)
     for w in range(px.shape[0]):
@@ -104,28 +121,33 @@ def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
         delta = ri + (x[i] - px[w]) * nx + (y[i] - py[w]) * ny
         touching = delta > 0.0
         f_old = m_old = d_n = d_t = d_r = 0.0
-        if tangential is not None:
+        if spins:
             f_old = spring[k]
-        if rolling is not None:
+        if remembers:
             m_old = moment[k]
         if ledger is not None:
-            d_n, d_t, d_r = dash_n[k], dash_t[k], dash_r[k]
-        if not (touching or f_old != 0.0 or m_old != 0.0 or d_n != 0.0):
+            d_n, d_t = dash_n[k], dash_t[k]
+        if damps:
+            d_r = dash_r[k]
+        if not (touching or f_old != 0.0 or m_old != 0.0 or d_n != 0.0 or d_r != 0.0):
             continue
         ux, uy = wvx[w] - vx[i], wvy[w] - vy[i]
         arm = v_t = omega_r = 0.0
-        if tangential is not None:
+        if spins:
             arm, omega_r = ri - 0.5 * delta, omega[i]
             v_t = uy * nx - ux * ny - arm * omega[i]
-        meeting = Meeting(delta, ux * nx + uy * ny, v_t, omega_r, ri, compliance[i])
+        meeting = Meeting(delta, ux * nx + uy * ny, v_t, omega_r, ri, inverse_mass[i], compliance[i])
+        pair_laws = of_pair(laws, material[i], walls.material[w])
         memory = Memory(f_old, m_old, d_n, d_t, d_r)
-        response, lost = touch(touching, normal, tangential, rolling, ledger, meeting, memory, lost, dt)
-        if tangential is not None:
+        response, lost = touch(touching, pair_laws, ledger, meeting, memory, lost, dt)
+        if spins:
             spring[k] = response.spring
-        if rolling is not None:
+        if remembers:
             moment[k] = response.moment
         if ledger is not None:
-            dash_n[k], dash_t[k], dash_r[k] = response.dash_n, response.dash_t, response.dash_r
+            dash_n[k], dash_t[k] = response.dash_n, response.dash_t
+        if damps:
+            dash_r[k] = response.dash_r
         fx = -response.f_n * nx - response.f_t * ny
         fy = -response.f_n * ny + response.f_t * nx
         grains.fx[i] += fx
@@ -134,7 +156,7 @@ def wall_forces(b, grains, walls, normal, tangential, rolling, ledger, dt):
         force[b, w, 0] -= fx
         force[b, w, 1] -= fy
     wall_work(b, walls, ledger, dt)
-    add_losses(b, tangential, ledger, lost, dt)
+    add_losses(b, ledger, lost, dt)
 
 
 @kernel

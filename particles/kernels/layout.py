@@ -47,6 +47,7 @@ class GrainArrays(NamedTuple):
     inverse_mass: Array  # 0 for a prescribed grain
     inverse_inertia: Array
     roll_compliance: Array  # (n,) 1/(I + m r^2), 0 for a prescribed grain
+    material: Array  # (n,) row in the table of laws, if there is one
     x_listed: Array  # (n,) position when the contact list was made
     y_listed: Array
     impulse: Array  # (n_prescribed, 2) contact impulse received since it was cleared [N s/m]
@@ -82,6 +83,7 @@ class WallArrays(NamedTuple):
     ny: Array
     vx: Array
     vy: Array
+    material: Array
     px_listed: Array  # (n_walls,) the point when the near grains were listed
     py_listed: Array
     force: Array  # (n_blocks, n_walls, 2) force of the grains on the wall
@@ -102,73 +104,6 @@ class LedgerArrays(NamedTuple):
     prescribed_work: Array  # (n_prescribed,) done by each prescribed grain on the others
 
 
-class LinearNormal(NamedTuple):
-    k_n: float
-    c_n: float
-    may_pull: bool
-
-
-class CoulombTangential(NamedTuple):
-    k_t: float
-    c_t: float
-    mu: float
-
-
-class ElasticPlasticRolling(NamedTuple):
-    mu_r: float
-    eta_r: float
-    k_r: float  # 0: k_t R_r^2
-
-
 class GlobalDamping(NamedTuple):
     alpha_t: float
     alpha_r: float
-
-
-class Meeting(NamedTuple):
-    """Kinematics of one contact of i with j (model 1.1)."""
-
-    delta: float
-    v_n: float
-    v_t: float
-    omega_r: float
-    r_r: float
-    compliance: float
-
-
-class Memory(NamedTuple):
-    """What a contact knows of the step before: its springs, and its dashpots for the ledger."""
-
-    spring: float
-    moment: float
-    dash_n: float
-    dash_t: float
-    dash_r: float
-
-
-class Response(NamedTuple):
-    """What a contact does: totals, spring parts, the dashpots' share, and what the limits cut off."""
-
-    f_n: float
-    f_t: float
-    m_t: float
-    spring: float
-    moment: float
-    dash_n: float
-    dash_t: float
-    dash_r: float
-    cut_t: float
-    cut_r: float
-
-
-class Lost(NamedTuple):
-    """Sums over the contacts of one block in one step, to be scaled by `touch.add_losses`."""
-
-    n: float  # powers of the dashpots, at both ends of the step
-    t: float
-    r: float
-    s: float  # forces times cuts of the sliders
-    p: float
-
-
-NOTHING_LOST = Lost(0.0, 0.0, 0.0, 0.0, 0.0)

@@ -43,7 +43,7 @@ def add_incoming(b, grains, pairs, spins):
 
 
 @kernel
-def kick(b, grains, gravity_x, gravity_y, tangential, damping, ledger, dt):
+def kick(b, grains, gravity_x, gravity_y, spins, damping, ledger, dt):
     """Velocities of the free grains of block `b` from n - 1/2 to n + 1/2."""
     vx, vy, omega = grains.vx, grains.vy, grains.omega
     fx, fy, torque, mass, inertia = grains.fx, grains.fy, grains.torque, grains.mass, grains.inertia
@@ -66,7 +66,7 @@ def kick(b, grains, gravity_x, gravity_y, tangential, damping, ledger, dt):
     if damping is not None and ledger is not None:
         ledger.loss[b, GLOBAL_DAMPING] += ledger.loss[b, DAMPING_AHEAD] + 0.5 * dt * alpha_t * now
         ledger.loss[b, DAMPING_AHEAD] = 0.5 * dt * alpha_t * ahead
-    if tangential is not None:
+    if spins:
         now = ahead = 0.0
         for i in range(np.uint64(first), np.uint64(last)):
             a = torque[i] * inverse_inertia[i]
