@@ -9,7 +9,8 @@ from particles.contact import Contact
 from particles.errors import ParticleError
 from particles.kernels import cells
 from particles.kernels.layout import Grid, PairArrays, WallArrays
-from particles.state import Grains
+from particles.periodic import Period, folded, with_images
+from particles.state import Floats, Grains
 from particles.walls import Wall
 
 SMALLEST_SKIN, LARGEST_SKIN = 0.06, 0.5  # over the mean radius of the free grains
@@ -52,11 +53,14 @@ class ContactList:
     walls : list of Wall
     ledger : bool
         Whether the dashpot forces of the last step are kept for the energy ledger.
+    period : (2,) of float or None
+        After which x and y repeat [m].
     """
 
-    def __init__(self, contact: Contact, walls: list[Wall], *, ledger: bool) -> None:
+    def __init__(self, contact: Contact, walls: list[Wall], *, ledger: bool, period: Period = (None, None)) -> None:
         self.contact = contact
         self.ledger = ledger
+        self.period = period
         self.skin = 0.0
         none = np.zeros(0, np.uint32)
         self.pairs = self._pair_arrays(np.zeros(1, np.int64), none, none, np.zeros(2, np.int64))
@@ -90,17 +94,26 @@ class ContactList:
         free = np.arange(grains.n_free)
         if grains.n_free == 0:
             return free
-        grid = self._grid(grains, _levels(grains.radius[: grains.n_free])[0][1])
-        return cells.sort_by_cell(grains.x, grains.y, free, grid)[0]
+        x, y = folded(grains.x, self.period[0]), folded(grains.y, self.period[1])
+        grid = self._grid(x, y, _levels(grains.radius[: grains.n_free])[0][1])
+        return cells.sort_by_cell(x, y, free, grid)[0]
 
     def _near_pairs(self, grains: Grains) -> np.ndarray:
         """All near pairs (k, 2), lower index first."""
+        if self.period == (None, None):
+            return self._search(grains.x, grains.y, grains.radius, grains.body)
+        x, y, of = with_images(grains.x, grains.y, grains.radius, self.skin, self.period)
+        found = self._search(x, y, grains.radius[of], grains.body[of])
+        found = found[found[:, 0] < len(grains)]  # two images meet where their originals do
+        return np.sort(of[found], axis=1).astype(np.int32)
+
+    def _search(self, x: Floats, y: Floats, radius: Floats, body: np.ndarray) -> np.ndarray:
         levels = []
-        for members, largest in _levels(grains.radius):
-            grid = self._grid(grains, largest)
-            levels.append(Level(members, grid, *cells.sort_by_cell(grains.x, grains.y, members, grid)))
-        state = (grains.x, grains.y, grains.radius, grains.body, self.skin)
-        capacity = max(len(self.pairs.partner) * 5 // 4, 4 * grains.n_free) + 1024
+        for members, largest in _levels(radius):
+            grid = self._grid(x, y, largest)
+            levels.append(Level(members, grid, *cells.sort_by_cell(x, y, members, grid)))
+        state = (x, y, radius, body, self.skin)
+        capacity = max(len(self.pairs.partner) * 5 // 4, 4 * len(x)) + 1024
         while True:
             found, count = np.empty((capacity, 2), np.int32), 0
             for k, level in enumerate(levels):
@@ -148,12 +161,12 @@ class ContactList:
         )
         cells.carry_walls(old_of, grains.n_free, old.grain, old.wall, _history(old), grain, wall, _history(self.walls))
 
-    def _grid(self, grains: Grains, largest_radius: float) -> Grid:
+    def _grid(self, x: Floats, y: Floats, largest_radius: float) -> Grid:
         """Cells of the largest diameter plus the skin over the bounding box of all grains."""
-        x_min, y_min = float(grains.x.min()), float(grains.y.min())
-        width, height = float(grains.x.max()) - x_min, float(grains.y.max()) - y_min
+        x_min, y_min = float(x.min()), float(y.min())
+        width, height = float(x.max()) - x_min, float(y.max()) - y_min
         size = 2.0 * largest_radius + self.skin
-        most = max(4 * len(grains), 64)
+        most = max(4 * len(x), 64)
         while (width / size + 1.0) * (height / size + 1.0) > most:
             size *= 1.5
         return Grid(x_min, y_min, size, int(width / size) + 1, int(height / size) + 1)

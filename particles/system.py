@@ -21,6 +21,7 @@ from particles.kernels.layout import (
 )
 from particles.kernels.motion import kick
 from particles.neighbours import LISTS_PER_SORT, ContactList, block_starts
+from particles.periodic import checked_period
 from particles.state import Grains
 from particles.walls import Wall
 
@@ -65,6 +66,9 @@ class ParticleSystem:
     damping : GlobalDamping, optional
     ledger : bool
         Keep losses and works for the energy balance.
+    period : (2,) of float or None
+        Lengths [m] after which x and y repeat, from 0 on; at least 5 of the largest radii. Positions
+        are not folded back: a grain that goes around keeps counting.
     threads : int
         The same bits for any number.
 
@@ -84,6 +88,7 @@ class ParticleSystem:
         gravity: Sequence[float] = (0.0, 0.0),
         damping: GlobalDamping | None = None,
         ledger: bool = True,
+        period: Sequence[float | None] = (None, None),
         threads: int = 1,
     ) -> None:
         require("time step", time_step, above=0.0)
@@ -107,7 +112,8 @@ class ParticleSystem:
             self.ledger = LedgerArrays(
                 np.zeros((len(self.blocks) - 1, LEDGER_COLUMNS)), np.zeros(len(grains) - grains.n_free)
             )
-        self.list = ContactList(contact, list(walls), ledger=ledger)
+        self.period = checked_period(period, grains.radius)
+        self.list = ContactList(contact, list(walls), ledger=ledger, period=self.period)
         self._started = False
 
     # -- stepping -----------------------------------------------------------------------------
@@ -164,6 +170,7 @@ class ParticleSystem:
         return GrainArrays(
             g.x, g.y, g.theta, g.vx, g.vy, g.omega, g.fx, g.fy, g.torque, g.radius, g.mass, g.inertia,
             g.inverse_mass, g.inverse_inertia, g.roll_compliance, g.material, g.x_listed, g.y_listed, self.impulse, self.blocks,
+            *self.period,
         )  # fmt: skip
 
     def _damping(self) -> Any:

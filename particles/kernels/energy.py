@@ -7,6 +7,7 @@ from particles.kernels.laws.materials import of_pair
 from particles.kernels.laws.normal import normal_energy, normal_stiffness
 from particles.kernels.laws.rolling import rolling_stiffness, turns_spring
 from particles.kernels.laws.tangential import present, tangential_stiffness
+from particles.kernels.periodic import nearest
 
 
 @kernel
@@ -36,7 +37,11 @@ def look_at_contacts(grains, pairs, walls, laws, overlap, contacts):
         for k in range(pairs.start[i], pairs.start[i + 1]):
             j = pairs.partner[k]
             reach = grains.radius[i] + grains.radius[j]
-            delta = reach - math.hypot(grains.x[j] - grains.x[i], grains.y[j] - grains.y[i])
+            dx, dy = (
+                nearest(grains.period_x, grains.x[j] - grains.x[i]),
+                nearest(grains.period_y, grains.y[j] - grains.y[i]),
+            )
+            delta = reach - math.hypot(dx, dy)
             if delta > 0.0:
                 f = m = 0.0
                 if present(laws.tangential):

@@ -10,6 +10,7 @@ from particles.kernels.laws.response import Meeting
 from particles.kernels.laws.rolling import turns_dashpot, turns_spring
 from particles.kernels.laws.tangential import present
 from particles.kernels.layout import WALL_WORK
+from particles.kernels.periodic import nearest
 from particles.kernels.touch import NOTHING_LOST, Memory, add_losses, touch
 
 
@@ -31,7 +32,7 @@ def pair_forces(b, grains, pairs, laws, ledger, dt):
     last = grains.block_start[b + 1]
     x, y, vx, vy, omega = grains.x, grains.y, grains.vx, grains.vy, grains.omega
     radius, compliance, inverse_mass = grains.radius, grains.roll_compliance, grains.inverse_mass
-    material = grains.material
+    material, period_x, period_y = grains.material, grains.period_x, grains.period_y
     fx, fy, torque = grains.fx, grains.fy, grains.torque
     owner, partner, spring, moment = pairs.owner, pairs.partner, pairs.spring, pairs.moment
     crossing, cross = pairs.crossing, np.uint64(pairs.crossing_start[b])
@@ -41,7 +42,8 @@ def pair_forces(b, grains, pairs, laws, ledger, dt):
     lost = NOTHING_LOST
     for k in range(np.uint64(pairs.start[grains.block_start[b]]), np.uint64(pairs.start[last])):
         i, j = owner[k], partner[k]
-        dx, dy, reach = x[j] - x[i], y[j] - y[i], radius[i] + radius[j]
+        dx, dy = nearest(period_x, x[j] - x[i]), nearest(period_y, y[j] - y[i])
+        reach = radius[i] + radius[j]
         d2 = dx * dx + dy * dy
         f_old = m_old = d_n = d_t = d_r = 0.0
         if spins:

@@ -86,7 +86,9 @@ def by_law(stub: Function) -> Function:
     choices: dict[type, Callable[..., Any]] = {}
 
     def choose(law: types.Type, *rest: types.Type) -> Callable[..., Any]:
-        return choices[type(None) if isinstance(law, types.NoneType) else law.instance_class]
+        if isinstance(law, types.NoneType):
+            return choices[type(None)]
+        return choices[float if isinstance(law, types.Float) else law.instance_class]
 
     def of(*kinds: type | None) -> Callable[[Function], Function]:
         def register(function: Function) -> Function:

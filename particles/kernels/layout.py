@@ -52,6 +52,8 @@ class GrainArrays(NamedTuple):
     y_listed: Array
     impulse: Array  # (n_prescribed, 2) contact impulse received since it was cleared [N s/m]
     block_start: Array  # (n_blocks + 1,) first grain of each block; the last block is prescribed
+    period_x: float | None  # after which everything repeats; None: it does not
+    period_y: float | None
 
 
 class PairArrays(NamedTuple):
