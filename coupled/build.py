@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,10 +16,11 @@ import particles as dem
 import structure as fem
 from coupled.errors import LeitoError
 from coupled.glued import GluedGrains
+from coupled.laws import contact_law, interface_spring
 from coupled.model import Model, Structure
 from coupled.scene import Beam, BodyLoad, BoundaryLoad, PointLoad, RowUnder, Scene, SettledGrains
+from coupled.scene.materials import GRAINS, STRUCTURE, materials
 from particles.beds import drop_height_on, lattice
-from particles.contact import recipe
 from particles.timestep import require_stable
 
 # Measured on the real code (tests/coupled/test_exchange.py): with every glued grain on a fixed partner the
@@ -36,7 +37,7 @@ class Built:
 
     model: Model
     scene: Scene
-    contact: dem.ContactModel | None
+    contact: dem.Contact | None
     stiffness_ratio: float
     stable_dt_ratio: float
 
@@ -59,7 +60,7 @@ def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI
     LeitoError, MeshError, StructureError, ParticleError
         One sentence, when the parts do not go together.
     """
-    contact = None if scene.contact is None else contact_model(scene)
+    contact = None if scene.contact is None else contact_law(scene)
     free = _free_grains(scene, bed) if comm.rank == 0 else None
     body, glued = None, None
     if scene.structure is not None:
@@ -78,59 +79,9 @@ def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI
         lagged=scene.interface is not None and scene.interface.exchange == "lagged",
         time_step=scene.time.step,
     )
-    ratio = _stiffness_ratio(scene, model, contact)
+    ratio = _stiffness_ratio(scene, model, contact, comm)
     dt_ratio = scene.time.step / dem.source_bound(system.grains, contact) if system is not None else 0.0
     return Built(model, scene, contact, ratio, comm.bcast(dt_ratio, root=0))
-
-
-def contact_model(scene: Scene) -> dem.ContactModel:
-    """The contact law of a scene, its numbers given or from the recipe."""
-    given = scene.contact
-    numbers = given.model_dump(exclude_none=True)
-    may_pull = False
-    if given.recipe is not None:
-        numbers |= _recipe_numbers(scene)
-        may_pull = given.recipe.restitution_at == "zero_overlap"
-    tangential = rolling = None
-    if given.friction is not None:
-        tangential = dem.CoulombFriction(
-            stiffness=numbers["tangential_stiffness"],
-            friction=given.friction,
-            damping=numbers["tangential_damping"],
-        )
-    if given.rolling_friction is not None:
-        rolling = dem.ElasticPlasticRolling(
-            friction=given.rolling_friction,
-            damping_ratio=given.rolling_damping_ratio,
-            stiffness=given.rolling_stiffness,
-        )
-    normal = dem.LinearSpringDashpot(
-        stiffness=numbers["normal_stiffness"], damping=numbers["normal_damping"], may_pull=may_pull
-    )
-    return dem.ContactModel(normal=normal, tangential=tangential, rolling=rolling)
-
-
-def _recipe_numbers(scene: Scene) -> dict[str, float]:
-    """Coefficients for two equal grains of the smallest size (model 1.3)."""
-    wish, grains = scene.contact.recipe, scene.first_grains
-    if grains is None:
-        raise LeitoError("contact.recipe needs free grains, whose mass it uses: give the stiffnesses outright")
-    mass, overlap = grains.smallest_mass, wish.largest_overlap * grains.smallest_radius
-    gravity = math.hypot(*scene.gravity)
-    if wish.drop_height is not None:
-        stiffness = recipe.stiffness_from_drop_height(
-            mass=mass, gravity=gravity, drop_height=wish.drop_height, largest_overlap=overlap
-        )
-    else:
-        stiffness = recipe.stiffness_from_impact_speed(mass=mass, speed=wish.impact_speed, largest_overlap=overlap)
-    options = {"restitution": wish.restitution, "may_pull": wish.restitution_at == "zero_overlap"}
-    tangential = wish.stiffness_ratio * stiffness
-    return {
-        "normal_stiffness": stiffness,
-        "normal_damping": recipe.damping_from_restitution(effective_mass=mass / 2, stiffness=stiffness, **options),
-        "tangential_stiffness": tangential,
-        "tangential_damping": recipe.damping_from_restitution(effective_mass=mass / 2, stiffness=tangential, **options),
-    }
 
 
 def _free_grains(scene: Scene, bed: Saved | None) -> dem.Grains | None:
@@ -238,19 +189,22 @@ def _particles(
     scene: Scene,
     free: dem.Grains | None,
     glued: GluedGrains | None,
-    contact: dem.ContactModel,
+    contact: dem.Contact,
     bed: Saved | None,
     threads: int,
 ) -> dem.ParticleSystem:
     grains = free if free is not None else dem.Grains.discs(np.zeros((0, 2)), np.zeros(0), 1.0)
+    of = materials(scene).index
     if glued is not None:
-        grains = grains.with_prescribed(glued.reference, glued.radius, Model.GLUED)
+        grains = grains.with_prescribed(glued.reference, glued.radius, Model.GLUED, material=of(STRUCTURE))
     for number, row in enumerate(scene.rows):
-        grains = grains.with_prescribed(_row_places(scene, row, glued), row.radius, Model.GLUED + 1 + number)
+        grains = grains.with_prescribed(
+            _row_places(scene, row, glued), row.radius, Model.GLUED + 1 + number, material=of(row.name or GRAINS)
+        )
     require_stable(grains, contact, scene.time.step)
     options = {
         "time_step": scene.time.step,
-        "walls": [] if scene.box is None else dem.box(scene.box.width, scene.box.height, scene.box.walls),
+        "walls": _walls(scene),
         "gravity": scene.gravity,
         "threads": threads,
         "damping": None
@@ -266,6 +220,13 @@ def _particles(
         if not isinstance(row, RowUnder):
             system.set_velocity(bodies[Model.GLUED + 1 + number], np.array(row.velocity))
     return system
+
+
+def _walls(scene: Scene) -> list[dem.Wall]:
+    if scene.box is None:
+        return []
+    walls = dem.box(scene.box.width, scene.box.height, scene.box.walls)
+    return [replace(wall, material=materials(scene).index(wall.name)) for wall in walls]
 
 
 def _row_places(scene: Scene, row: Any, glued: GluedGrains | None) -> NDArray[np.float64]:
@@ -288,12 +249,14 @@ def stable_ratio(scene: Scene) -> float:
     return STABLE_RATIO if scene.interface.substeps == 1 else STABLE_RATIO_SUBCYCLED
 
 
-def _stiffness_ratio(scene: Scene, model: Model, contact: dem.ContactModel | None) -> float:
+def _stiffness_ratio(scene: Scene, model: Model, contact: dem.Contact | None, comm: MPI.Intracomm) -> float:
     """The coupling's r; refused above the scheme's limit."""
     if model.glued is None:
         return 0.0
-    normal = contact.normal
-    ratio = model.glued.stiffness_ratio(normal.stiffness, normal.damping, model.window, model.structure.acceleration_by)
+    spring = comm.bcast(
+        None if model.particles is None else interface_spring(scene, contact, model.particles.grains), root=0
+    )
+    ratio = model.glued.stiffness_ratio(*spring, model.window, model.structure.acceleration_by)
     limit = scene.interface.largest_stiffness_ratio or stable_ratio(scene)
     if ratio > limit:
         raise LeitoError(

@@ -9,6 +9,9 @@ from pydantic import Discriminator, Field, Tag
 from coupled.scene.shape import Shape
 from coupled.scene.types import Count, Positive, Table, Vector
 
+RowName = Annotated[str, Field(min_length=1)] | None
+ROW_NAME = Field(None, description="name of its material in the contact law; absent: that of the free grains")
+
 
 class Interface(Table):
     """Grains glued to the boundary of the structure: the door between both physics."""
@@ -56,6 +59,7 @@ class Row(Table):
     end: Vector = Field(description="centre of the last grain [m]")
     count: Count = Field(description="number of grains")
     radius: Positive = Field(description="radius [m]")
+    name: RowName = ROW_NAME
     velocity: Vector = Field((0.0, 0.0), description="constant velocity of the row [m/s]")
 
 
@@ -66,6 +70,7 @@ class RowUnder(Table):
 
     under: str = Field(description="boundary of the structure")
     radius: Positive = Field(description="radius [m]")
+    name: RowName = ROW_NAME
 
 
 def _row_kind(data: Any) -> str:

@@ -182,7 +182,7 @@ BAD: dict[str, tuple[dict[str, Any], dict[str, Any], str, tuple[str, ...]]] = {
         GRAINS,
         {
             "contact.tangential_stiffness": GONE,
-            "contact.recipe": {"drop_height": 1.0, "restitution": 0.5},
+            "contact.recipe": {"from_drop_height": 1.0, "restitution": 0.5},
         },
         "contact.normal_stiffness",
         ("recipe",),
@@ -191,11 +191,11 @@ BAD: dict[str, tuple[dict[str, Any], dict[str, Any], str, tuple[str, ...]]] = {
         GRAINS,
         {"contact": {"recipe": {"restitution": 0.5}}},
         "contact.recipe",
-        ("drop_height", "impact_speed"),
+        ("from_drop_height", "from_impact_speed"),
     ),
     "restitution above one": (
         GRAINS,
-        {"contact": {"recipe": {"drop_height": 1.0, "restitution": 1.5}}},
+        {"contact": {"recipe": {"from_drop_height": 1.0, "restitution": 1.5}}},
         "contact.recipe.restitution",
         ("at most 1",),
     ),
