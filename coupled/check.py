@@ -13,6 +13,7 @@ from mpi4py import MPI
 from coupled import bed as beds
 from coupled import cautions
 from coupled.build import Built, build, stable_ratio
+from coupled.contact_report import contact_rows
 from coupled.output.folder import SUMMARY
 from coupled.scene import Scene, SettledGrains
 from particles import source_bound
@@ -49,8 +50,8 @@ def models(scene: Scene) -> list[str]:
     """The features that a scene names; whatever it does not name is not computed."""
     named = {
         "free grains": scene.grains is not None,
-        "friction": scene.contact is not None and scene.contact.friction is not None,
-        "rolling resistance": scene.contact is not None and scene.contact.rolling_friction is not None,
+        "friction": scene.contact is not None and scene.contact.rubs,
+        "rolling resistance": scene.contact is not None and scene.contact.rolls,
         "global damping": scene.damping is not None,
         "walls": scene.box is not None and bool(scene.box.walls),
         "rows of fixed grains": bool(scene.rows),
@@ -80,10 +81,8 @@ def _grain_rows(built: Built) -> list[Row]:
         return []
     n_free, n = system.grains.n_free, len(system.grains)
     rows = [("grains", "free, prescribed", f"{n_free}, {n - n_free}")]
+    rows += contact_rows(built.scene)
     law = built.contact
-    rows.append(
-        ("grains", "normal stiffness, dashpot", f"{law.normal.stiffness:.4g} N/m, {law.normal.damping:.4g} N s/m")
-    )
     if n_free:
         bound = source_bound(system.grains, law)
         single = source_bound(system.grains, law, factor=2.0)

@@ -18,6 +18,7 @@ from mpi4py import MPI
 from coupled import bed as beds
 from coupled import cautions
 from coupled.build import Built, build
+from coupled.contact_report import contact_sentences
 from coupled.errors import Interrupted
 from coupled.observe import Observation, observe
 from coupled.output import checkpoint
@@ -136,6 +137,8 @@ class Run:
     def go(self, *, progress: bool) -> None:
         """Advance to the end, or to Ctrl-C."""
         self._say(cautions.before(self.built))
+        for sentence in contact_sentences(self.scene):
+            self._log(sentence)
         self._write_provenance()
         with (
             _Stop() as stop,

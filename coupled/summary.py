@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from coupled.build import Built, stable_ratio
+from coupled.contact_report import contact_numbers
 from coupled.observe import Observation
 
 
@@ -46,6 +47,7 @@ def summarise(
         "interface_residual": numbers.get("interface_residual", 0.0),
         "momentum_residual_max": peaks["momentum_residual"],
     }
+    summary |= contact_numbers(built.scene)
     if model.structure is not None:
         summary |= {
             "kind": built.scene.structure.kind,
