@@ -11,6 +11,7 @@ from particles.errors import ParticleError, require
 
 Floats = NDArray[np.float64]
 FREE = -1
+LEADS = ("lead_x", "lead_y", "lead_spin")
 WHOLE_NUMBERS = ("n_free", "body", "number", "material")
 
 
@@ -22,7 +23,8 @@ class Grains:
     counter-clockwise positive. Free grains are reordered in memory while they move; `number` is
     the place a grain had at the beginning, `body` is -1 for a free grain or the number of the
     prescribed body that carries it, and `material` the row of a `ContactTable`, 0 without one. Between calls of `ParticleSystem.advance` positions and forces
-    belong to the present time, velocities to half a step later.
+    belong to the present time, velocities to half a step later; what they gained in half a step is
+    kept in `lead_x`, `lead_y`, `lead_spin` where a scheme needs it, else these are None.
     """
 
     n_free: int
@@ -46,6 +48,9 @@ class Grains:
     y_listed: Floats
     body: NDArray[np.int32]
     number: NDArray[np.int64]
+    lead_x: Floats | None = None
+    lead_y: Floats | None = None
+    lead_spin: Floats | None = None
 
     @classmethod
     def discs(
@@ -65,7 +70,7 @@ class Grains:
         """
         place = np.atleast_2d(np.asarray(position, float)).reshape(-1, 2)
         n = len(place)
-        zeros = {f.name: np.zeros(n) for f in fields(cls) if f.name not in WHOLE_NUMBERS}
+        zeros = {f.name: np.zeros(n) for f in fields(cls) if f.name not in WHOLE_NUMBERS + LEADS}
         grains = cls(
             n_free=n, body=np.full(n, FREE, np.int32), number=np.arange(n), material=np.zeros(n, np.int32), **zeros
         )
@@ -86,14 +91,14 @@ class Grains:
     def from_saved(cls, saved: Mapping[str, NDArray[Any]]) -> "Grains":
         """The free grains of a state saved by `ParticleSystem.state`, in the same order."""
         n_free = int(saved["grains.n_free"])
-        arrays = {f.name: np.array(saved[f"grains.{f.name}"][:n_free]) for f in fields(cls) if f.name != "n_free"}
-        return cls(n_free=n_free, **arrays)
+        names = [f.name for f in fields(cls) if f.name != "n_free" and f"grains.{f.name}" in saved]
+        return cls(n_free=n_free, **{name: np.array(saved[f"grains.{name}"][:n_free]) for name in names})
 
     def with_prescribed(self, position: ArrayLike, radius: ArrayLike, body: int, *, material: int = 0) -> "Grains":
         """These grains and the discs of one more prescribed body (no mass: they are not integrated)."""
         place = np.asarray(position, float).reshape(-1, 2)
         n = len(place)
-        more = {f.name: np.zeros(n) for f in fields(self) if f.name not in WHOLE_NUMBERS}
+        more = {name: np.zeros(n) for name in self.arrays() if name not in WHOLE_NUMBERS}
         more["x"], more["y"] = place[:, 0].copy(), place[:, 1].copy()
         more["radius"] = np.broadcast_to(np.asarray(radius, float), (n,)).copy()
         more["body"] = np.full(n, body, np.int32)
@@ -106,6 +111,10 @@ class Grains:
 
     def __len__(self) -> int:
         return len(self.x)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """All arrays (n,) that are kept, by name."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if isinstance(getattr(self, f.name), np.ndarray)}
 
     @property
     def position(self) -> Floats:
@@ -122,10 +131,16 @@ class Grains:
 
     def reorder(self, order: NDArray[np.int64]) -> None:
         """Put free grain order[k] into place k."""
-        for f in fields(self):
-            if f.name != "n_free":
-                array = getattr(self, f.name)
-                array[: self.n_free] = array[order]
+        for array in self.arrays().values():
+            array[: self.n_free] = array[order]
+
+    def keep_leads(self, wanted: bool) -> None:
+        """Have arrays for the gain of half a step, or none."""
+        for name in LEADS:
+            if wanted and getattr(self, name) is None:
+                setattr(self, name, np.zeros(len(self)))
+            elif not wanted:
+                setattr(self, name, None)
 
     def _check(self) -> None:
         for name in ("x", "y", "vx", "vy", "omega", "radius", "mass"):

@@ -1,7 +1,7 @@
 """Discs in motion: state, contacts, walls and the leapfrog, behind one object."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numba
@@ -17,6 +17,7 @@ from particles.kernels.layout import (
     LEDGER_COLUMNS,
     WALL_WORK,
     GrainArrays,
+    LeadArrays,
     LedgerArrays,
 )
 from particles.kernels.motion import kick
@@ -25,6 +26,7 @@ from particles.periodic import checked_period
 from particles.state import Grains
 from particles.walls import Wall
 
+SCHEMES = ("leapfrog", "velocity_verlet")
 LOSSES = ("normal_dashpot", "tangential_dashpot", "sliding", "rolling_dashpot", "rolling_slip", "global_damping")
 
 
@@ -69,6 +71,9 @@ class ParticleSystem:
     period : (2,) of float or None
         Lengths [m] after which x and y repeat, from 0 on; at least 5 of the largest radii. Positions
         are not folded back: a grain that goes around keeps counting.
+    scheme : str
+        "leapfrog", or "velocity_verlet", which differs in what dashpots and drag see: the velocity
+        ``v(n-1/2) + dt a(n-1)/2`` at the present time instead of ``v(n-1/2)``.
     threads : int
         The same bits for any number.
 
@@ -89,6 +94,7 @@ class ParticleSystem:
         damping: GlobalDamping | None = None,
         ledger: bool = True,
         period: Sequence[float | None] = (None, None),
+        scheme: str = "leapfrog",
         threads: int = 1,
     ) -> None:
         require("time step", time_step, above=0.0)
@@ -100,6 +106,10 @@ class ParticleSystem:
         self.grains = grains
         self.contact = contact
         self.time_step = float(time_step)
+        if scheme not in SCHEMES:
+            raise ParticleError(f"scheme {scheme!r} must be one of {', '.join(SCHEMES)}")
+        self.scheme = scheme
+        grains.keep_leads(scheme == "velocity_verlet")
         self.gravity = np.array(gravity, float)
         self.damping = damping
         self.threads = use_threads(threads)
@@ -129,10 +139,12 @@ class ParticleSystem:
             return
         self._rebuild()
         arrays, laws = self._arrays(), self.contact.numbers()
-        stepping.forces(arrays, self.list.pairs, self.list.walls, *laws, None, 0.0)
-        half = 0.5 * self.time_step
+        stepping.forces(arrays, self.list.pairs, self.list.walls, *laws, None, None, 0.0)
+        half, lead = 0.5 * self.time_step, self._lead()
         for block in range(len(self.blocks) - 2):
-            kick(block, arrays, *self.gravity, self.contact.spins, self._damping(), self.ledger, half)
+            kick(block, arrays, *self.gravity, self.contact.spins, self._damping(), lead, self.ledger, half)
+        for gain in lead or ():
+            gain *= 2.0  # the kick was by half a step
         if self.ledger is not None:
             ahead = 2.0 * self.ledger.loss[:, DAMPING_AHEAD].copy()
             self.ledger.loss[:] = 0.0
@@ -152,7 +164,7 @@ class ParticleSystem:
         while True:
             arrays, listed = self._arrays(), self.list
             done, drifted = step(
-                arrays, listed.pairs, listed.walls, self.gravity, *laws, damping, self.ledger,
+                arrays, listed.pairs, listed.walls, self.gravity, *laws, damping, self._lead(), self.ledger,
                 bool(drifted), listed.reach2, left, self.time_step, self.threads if threaded else 1,
             )  # fmt: skip
             left -= done
@@ -172,6 +184,10 @@ class ParticleSystem:
             g.inverse_mass, g.inverse_inertia, g.roll_compliance, g.material, g.x_listed, g.y_listed, self.impulse, self.blocks,
             *self.period,
         )  # fmt: skip
+
+    def _lead(self) -> LeadArrays | None:
+        g = self.grains
+        return None if self.scheme == "leapfrog" else LeadArrays(g.lead_x, g.lead_y, g.lead_spin)
 
     def _damping(self) -> Any:
         return None if self.damping is None else self.damping.numbers()
@@ -228,7 +244,13 @@ class ParticleSystem:
         """
         look = look or self.look()
         kinetic, rotational, potential = looking.kinetic_energy(
-            self._arrays(), self.grains.n_free, *self.gravity, self.contact.spins, self._damping(), self.time_step
+            self._arrays(),
+            self.grains.n_free,
+            *self.gravity,
+            self.contact.spins,
+            self._damping(),
+            self._lead(),
+            self.time_step,
         )
         energies = {
             "kinetic": kinetic, "rotational": rotational, "gravity": potential,
@@ -270,7 +292,8 @@ class ParticleSystem:
 
     def state(self) -> dict[str, NDArray[Any]]:
         """Everything that is needed to go on with the same bits."""
-        saved = {f"grains.{f.name}": np.array(getattr(self.grains, f.name)) for f in fields(self.grains)}
+        saved = {f"grains.{name}": array.copy() for name, array in self.grains.arrays().items()}
+        saved["grains.n_free"] = np.array(self.grains.n_free)
         for group in ("pairs", "walls"):
             arrays = getattr(self.list, group)._asdict()
             saved |= {f"{group}.{name}": array.copy() for name, array in arrays.items()}
@@ -294,9 +317,8 @@ class ParticleSystem:
                 f"saved state has {len(saved['grains.x'])} grains, this system has {len(self.grains)}: "
                 "use the scene the state was saved from"
             )
-        for f in fields(self.grains):
-            if f.name != "n_free":
-                getattr(self.grains, f.name)[:] = saved[f"grains.{f.name}"]
+        for name, array in self.grains.arrays().items():
+            array[:] = saved[f"grains.{name}"]
         for group in ("pairs", "walls"):
             names = getattr(self.list, group)._fields
             arrays = type(getattr(self.list, group))(*(np.array(saved[f"{group}.{name}"]) for name in names))

@@ -11,11 +11,11 @@ from particles.kernels.motion import add_incoming, drift, kick, prescribed_work
 
 
 @kernel
-def block_forces(b, grains, pairs, walls, normal, tangential, rolling, ledger, dt):
+def block_forces(b, grains, pairs, walls, normal, tangential, rolling, lead, ledger, dt):
     laws = Laws(normal, tangential, rolling)  # numba's threads take tuples, but no tuples of tuples
     clear_forces(b, grains)
-    pair_forces(b, grains, pairs, laws, ledger, dt)
-    wall_forces(b, grains, walls, laws, ledger, dt)
+    pair_forces(b, grains, pairs, laws, lead, ledger, dt)
+    wall_forces(b, grains, walls, laws, lead, ledger, dt)
 
 
 @kernel
@@ -30,13 +30,13 @@ def receive(b, grains, ledger, dt):
 
 
 @kernel
-def block_motion(b, grains, pairs, gravity_x, gravity_y, tangential, damping, ledger, reach2, drifts, dt):
+def block_motion(b, grains, pairs, gravity_x, gravity_y, tangential, damping, lead, ledger, reach2, drifts, dt):
     """Kick block `b` (the prescribed one receives instead) and drift it into the next step if there is one."""
     add_incoming(b, grains, pairs, present(tangential))
     if b == grains.block_start.shape[0] - 2:
         receive(b, grains, ledger, dt)
     else:
-        kick(b, grains, gravity_x, gravity_y, present(tangential), damping, ledger, dt)
+        kick(b, grains, gravity_x, gravity_y, present(tangential), damping, lead, ledger, dt)
     if drifts:
         return block_drift(b, grains, tangential, ledger, reach2, dt)
     return 0
@@ -61,17 +61,17 @@ def move_walls(walls, reach2, dt):
     return stale
 
 
-def _forces(grains, pairs, walls, normal, tangential, rolling, ledger, dt):
+def _forces(grains, pairs, walls, normal, tangential, rolling, lead, ledger, dt):
     """All contact forces at the present positions."""
     n_blocks = grains.block_start.shape[0] - 1
     for b in numba.prange(n_blocks):
-        block_forces(b, grains, pairs, walls, normal, tangential, rolling, ledger, dt)
+        block_forces(b, grains, pairs, walls, normal, tangential, rolling, lead, ledger, dt)
     for b in numba.prange(n_blocks):
         add_incoming(b, grains, pairs, present(tangential))
 
 
 def _advance(
-    grains, pairs, walls, gravity, normal, tangential, rolling, damping, ledger, drifted, reach2, steps, dt, teams
+    grains, pairs, walls, gravity, normal, tangential, rolling, damping, lead, ledger, drifted, reach2, steps, dt, teams
 ):
     """Up to `steps` leapfrog steps: drift, contact forces, kick.
 
@@ -97,17 +97,17 @@ def _advance(
         for team in numba.prange(teams):
             first = team * n_blocks // teams
             for b in range(first, (team + 1) * n_blocks // teams):
-                block_forces(b, grains, pairs, walls, normal, tangential, rolling, ledger, dt)
+                block_forces(b, grains, pairs, walls, normal, tangential, rolling, lead, ledger, dt)
                 if source[b] >= first:
                     stale[b] = block_motion(
-                        b, grains, pairs, gravity_x, gravity_y, tangential, damping, ledger, reach2, drifts, dt
+                        b, grains, pairs, gravity_x, gravity_y, tangential, damping, lead, ledger, reach2, drifts, dt
                     )
         for team in numba.prange(teams):
             first = team * n_blocks // teams
             for b in range(first, (team + 1) * n_blocks // teams):
                 if source[b] < first:
                     stale[b] = block_motion(
-                        b, grains, pairs, gravity_x, gravity_y, tangential, damping, ledger, reach2, drifts, dt
+                        b, grains, pairs, gravity_x, gravity_y, tangential, damping, lead, ledger, reach2, drifts, dt
                     )
         if drifts and (move_walls(walls, reach2, dt) or stale.any()):
             return step + 1, 1

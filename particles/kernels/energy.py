@@ -80,18 +80,24 @@ def look_at_contacts(grains, pairs, walls, laws, overlap, contacts):
 
 
 @kernel
-def kinetic_energy(grains, n_free, gravity_x, gravity_y, spins, damping, dt):
+def kinetic_energy(grains, n_free, gravity_x, gravity_y, spins, damping, lead, dt):
     """m v(n-1/2) v(n+1/2) / 2 of the free grains, translation and rotation, and their potential."""
     alpha_t = alpha_r = translation = rotation = potential = 0.0
     if damping is not None:
         alpha_t, alpha_r = damping.alpha_t, damping.alpha_r
     for i in range(n_free):
         m = grains.mass[i]
-        before_x = (grains.vx[i] - dt * (grains.fx[i] / m + gravity_x)) / (1.0 - dt * alpha_t)
-        before_y = (grains.vy[i] - dt * (grains.fy[i] / m + gravity_y)) / (1.0 - dt * alpha_t)
+        if lead is None:
+            before_x = (grains.vx[i] - dt * (grains.fx[i] / m + gravity_x)) / (1.0 - dt * alpha_t)
+            before_y = (grains.vy[i] - dt * (grains.fy[i] / m + gravity_y)) / (1.0 - dt * alpha_t)
+        else:
+            before_x, before_y = grains.vx[i] - 2.0 * lead.x[i], grains.vy[i] - 2.0 * lead.y[i]
         translation += 0.5 * m * (before_x * grains.vx[i] + before_y * grains.vy[i])
         potential -= m * (gravity_x * grains.x[i] + gravity_y * grains.y[i])
         if spins:
-            before = (grains.omega[i] - dt * grains.torque[i] / grains.inertia[i]) / (1.0 - dt * alpha_r)
+            if lead is None:
+                before = (grains.omega[i] - dt * grains.torque[i] / grains.inertia[i]) / (1.0 - dt * alpha_r)
+            else:
+                before = grains.omega[i] - 2.0 * lead.spin[i]
             rotation += 0.5 * grains.inertia[i] * before * grains.omega[i]
     return translation, rotation, potential

@@ -6,10 +6,11 @@ import numpy as np
 
 from particles.kernels.jit import kernel
 from particles.kernels.laws.materials import of_pair
-from particles.kernels.laws.response import Meeting
+from particles.kernels.laws.response import Meeting, Now
 from particles.kernels.laws.rolling import turns_dashpot, turns_spring
 from particles.kernels.laws.tangential import present
 from particles.kernels.layout import WALL_WORK
+from particles.kernels.lead import now_at_wall, now_between
 from particles.kernels.periodic import nearest
 from particles.kernels.touch import NOTHING_LOST, Memory, add_losses, touch
 
@@ -24,7 +25,7 @@ def clear_forces(b, grains):
 
 
 @kernel
-def pair_forces(b, grains, pairs, laws, ledger, dt):
+def pair_forces(b, grains, pairs, laws, lead, ledger, dt):
     """Forces of the pairs that block `b` owns (model 1.1, 1.2; lever arms to mid-overlap).
 
     One flat loop with unsigned indices: signed ones are wrapped around at every access.
@@ -73,9 +74,12 @@ def pair_forces(b, grains, pairs, laws, ledger, dt):
             delta, ux * nx + uy * ny, v_t, omega_r, radius[i] * radius[j] / reach,
             inverse_mass[i] + inverse_mass[j], compliance[i] + compliance[j],
         )  # fmt: skip
+        now = Now(meeting.v_n, meeting.v_t, meeting.omega_r)
+        if lead is not None:
+            now = now_between(lead, i, j, nx, ny, arm_i, arm_j, meeting)
         pair_laws = of_pair(laws, material[i], material[j])
         memory = Memory(f_old, m_old, d_n, d_t, d_r)
-        response, lost = touch(touching, pair_laws, ledger, meeting, memory, lost, dt)
+        response, lost = touch(touching, pair_laws, ledger, meeting, now, memory, lost, dt)
         if spins:
             spring[k] = response.spring
         if remembers:
@@ -103,7 +107,7 @@ def pair_forces(b, grains, pairs, laws, ledger, dt):
 
 
 @kernel
-def wall_forces(b, grains, walls, laws, ledger, dt):
+def wall_forces(b, grains, walls, laws, lead, ledger, dt):
     """Forces of the walls on block `b`: the same laws, the wall as a body of infinite mass."""
     px, py, wnx, wny, wvx, wvy = walls.px, walls.py, walls.nx, walls.ny, walls.vx, walls.vy
     x, y, vx, vy, omega = grains.x, grains.y, grains.vx, grains.vy, grains.omega
@@ -139,9 +143,12 @@ def wall_forces(b, grains, walls, laws, ledger, dt):
             arm, omega_r = ri - 0.5 * delta, omega[i]
             v_t = uy * nx - ux * ny - arm * omega[i]
         meeting = Meeting(delta, ux * nx + uy * ny, v_t, omega_r, ri, inverse_mass[i], compliance[i])
+        now = Now(meeting.v_n, meeting.v_t, meeting.omega_r)
+        if lead is not None:
+            now = now_at_wall(lead, i, nx, ny, arm, meeting)
         pair_laws = of_pair(laws, material[i], walls.material[w])
         memory = Memory(f_old, m_old, d_n, d_t, d_r)
-        response, lost = touch(touching, pair_laws, ledger, meeting, memory, lost, dt)
+        response, lost = touch(touching, pair_laws, ledger, meeting, now, memory, lost, dt)
         if spins:
             spring[k] = response.spring
         if remembers:

@@ -99,6 +99,14 @@ class WallArrays(NamedTuple):
     dash_r: Array
 
 
+class LeadArrays(NamedTuple):
+    """What the velocities of all grains gain in the half step that ends at the present."""
+
+    x: Array  # (n,)
+    y: Array
+    spin: Array
+
+
 class LedgerArrays(NamedTuple):
     """Accumulated losses and works of every block."""
 

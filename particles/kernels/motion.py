@@ -43,7 +43,7 @@ def add_incoming(b, grains, pairs, spins):
 
 
 @kernel
-def kick(b, grains, gravity_x, gravity_y, spins, damping, ledger, dt):
+def kick(b, grains, gravity_x, gravity_y, spins, damping, lead, ledger, dt):
     """Velocities of the free grains of block `b` from n - 1/2 to n + 1/2."""
     vx, vy, omega = grains.vx, grains.vy, grains.omega
     fx, fy, torque, mass, inertia = grains.fx, grains.fy, grains.torque, grains.mass, grains.inertia
@@ -56,12 +56,17 @@ def kick(b, grains, gravity_x, gravity_y, spins, damping, ledger, dt):
         ax = fx[i] * inverse_mass[i] + gravity_x
         ay = fy[i] * inverse_mass[i] + gravity_y
         if damping is not None:
-            ax -= alpha_t * vx[i]
-            ay -= alpha_t * vy[i]
+            wx, wy = vx[i], vy[i]
+            if lead is not None:
+                wx, wy = wx + lead.x[i], wy + lead.y[i]
+            ax -= alpha_t * wx
+            ay -= alpha_t * wy
         ux, uy = vx[i] + dt * ax, vy[i] + dt * ay
         if damping is not None and ledger is not None:
-            now += mass[i] * (vx[i] * vx[i] + vy[i] * vy[i])
-            ahead += mass[i] * (vx[i] * ux + vy[i] * uy)
+            now += mass[i] * (vx[i] * wx + vy[i] * wy)
+            ahead += mass[i] * (wx * ux + wy * uy)
+        if lead is not None:
+            lead.x[i], lead.y[i] = 0.5 * dt * ax, 0.5 * dt * ay
         vx[i], vy[i] = ux, uy
     if damping is not None and ledger is not None:
         ledger.loss[b, GLOBAL_DAMPING] += ledger.loss[b, DAMPING_AHEAD] + 0.5 * dt * alpha_t * now
@@ -71,12 +76,17 @@ def kick(b, grains, gravity_x, gravity_y, spins, damping, ledger, dt):
         for i in range(np.uint64(first), np.uint64(last)):
             a = torque[i] * inverse_inertia[i]
             if damping is not None:
-                a -= alpha_r * omega[i]
-            w = omega[i] + dt * a
+                w = omega[i]
+                if lead is not None:
+                    w += lead.spin[i]
+                a -= alpha_r * w
+            u = omega[i] + dt * a
             if damping is not None and ledger is not None:
-                now += inertia[i] * omega[i] * omega[i]
-                ahead += inertia[i] * omega[i] * w
-            omega[i] = w
+                now += inertia[i] * omega[i] * w
+                ahead += inertia[i] * w * u
+            if lead is not None:
+                lead.spin[i] = 0.5 * dt * a
+            omega[i] = u
         if damping is not None and ledger is not None:
             ledger.loss[b, GLOBAL_DAMPING] += 0.5 * dt * alpha_r * now
             ledger.loss[b, DAMPING_AHEAD] += 0.5 * dt * alpha_r * ahead

@@ -33,13 +33,13 @@ NOTHING_LOST = Lost(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @inner_kernel
-def touch(touching, laws, ledger, meeting, memory, lost, dt):
+def touch(touching, laws, ledger, meeting, now, memory, lost, dt):
     """Response of one contact to its `memory` of the step before, and `lost` with its losses added.
 
     Numbers only: an array handed to a function of the inner loop may cost a count of references.
     """
     if touching:
-        response = respond(laws, meeting, memory.spring, memory.moment, dt)
+        response = respond(laws, meeting, now, memory.spring, memory.moment, dt)
     else:
         response = let_go(laws, meeting, memory.spring, memory.moment, dt)
     if ledger is None:

@@ -52,10 +52,10 @@ def normal_dashpot(law, delta, r_eff, inverse_mass):
 
 
 @inner_kernel
-def normal_force(law, meeting):
+def normal_force(law, meeting, v_n):
     """F_n, repulsive unless it may pull (model 1.2), and the dashpot's part of it."""
     spring = normal_spring(law, meeting.delta, meeting.r_eff)
-    f_n = spring - normal_dashpot(law, meeting.delta, meeting.r_eff, meeting.inverse_mass) * meeting.v_n
+    f_n = spring - normal_dashpot(law, meeting.delta, meeting.r_eff, meeting.inverse_mass) * v_n
     if f_n < 0.0 and not law.may_pull:
         f_n = 0.0
     return f_n, f_n - spring

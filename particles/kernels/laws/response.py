@@ -28,6 +28,14 @@ class Meeting(NamedTuple):
     compliance: float  # 1/(I_i + m_i r_i^2) + (j)
 
 
+class Now(NamedTuple):
+    """The velocities that dashpots see, at the present as far as the scheme knows; springs follow the step's motion."""
+
+    v_n: float
+    v_t: float
+    omega_r: float
+
+
 class Response(NamedTuple):
     """What a contact does: totals, spring parts, the dashpots' share, and what the limits cut off the trials."""
 
@@ -61,15 +69,15 @@ def shear_stiffnesses(laws, meeting, dt):
 
 
 @inner_kernel
-def respond(laws, meeting, f_old, m_old, dt):
+def respond(laws, meeting, now, f_old, m_old, dt):
     """A touching pair."""
-    f_n, dash_n = normal_force(laws.normal, meeting)
+    f_n, dash_n = normal_force(laws.normal, meeting, now.v_n)
     k_t, k_r, k_before = shear_stiffnesses(laws, meeting, dt)
     held = time_in_contact(meeting.delta, meeting.v_n, dt)
     trial_t = tangential_trial(laws.tangential, f_old, meeting.v_t * held, k_t, k_before)
     trial_r = rolling_trial(laws.rolling, m_old, meeting.omega_r * held, k_r)
-    f, f_t = tangential_force(laws.tangential, trial_t, f_n, meeting.v_t, k_t, meeting.inverse_mass)
-    m, m_t = rolling_moment(laws.rolling, trial_r, f_n, meeting, k_r)
+    f, f_t = tangential_force(laws.tangential, trial_t, f_n, now.v_t, k_t, meeting.inverse_mass)
+    m, m_t = rolling_moment(laws.rolling, trial_r, f_n, meeting, now.omega_r, k_r)
     return Response(f_n, f_t, m_t, f, m, dash_n, f_t - f, m_t - m, trial_t - f, trial_r - m)
 
 

@@ -59,7 +59,7 @@ def rolling_slip_energy(law, m_old, m, cut, k_r):
 
 
 @by_law
-def rolling_moment(law, trial, f_n, meeting, k_r):
+def rolling_moment(law, trial, f_n, meeting, omega_r, k_r):
     """Spring and moment on i under the limit (model 1.2, G 2.1.8)."""
 
 
@@ -104,15 +104,15 @@ def _(law, k_r, compliance):
 
 
 @rolling_moment.of(None)
-def _(law, trial, f_n, meeting, k_r):
+def _(law, trial, f_n, meeting, omega_r, k_r):
     return 0.0, 0.0
 
 
 @rolling_moment.of(ConstantRolling)
-def _(law, trial, f_n, meeting, k_r):
-    if meeting.omega_r == 0.0:
+def _(law, trial, f_n, meeting, omega_r, k_r):
+    if omega_r == 0.0:
         return 0.0, 0.0
-    return 0.0, -math.copysign(law.mu_r * meeting.r_eff * abs(f_n), meeting.omega_r)
+    return 0.0, -math.copysign(law.mu_r * meeting.r_eff * abs(f_n), omega_r)
 
 
 @rolling_stiffness.of(ElasticPlasticRolling, DampedRolling)
@@ -142,6 +142,6 @@ def _(law, k_r, compliance):
 
 
 @rolling_moment.of(ElasticPlasticRolling, DampedRolling)
-def _(law, trial, f_n, meeting, k_r):
-    dashpot = -rolling_dashpot(law, k_r, meeting.compliance) * meeting.omega_r
+def _(law, trial, f_n, meeting, omega_r, k_r):
+    dashpot = -rolling_dashpot(law, k_r, meeting.compliance) * omega_r
     return limited(trial, dashpot, law.mu_r * meeting.r_eff * abs(f_n))
