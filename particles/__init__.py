@@ -14,7 +14,10 @@ from particles.contact import (
     Material,
     MindlinFriction,
 )
+from particles.crowding import packing_limit
 from particles.errors import ParticleError
+from particles.network import StiffnessNetwork, stiffness_network
+from particles.stability import StepLimit, sharp_limit
 from particles.state import Grains
 from particles.system import ContactLook, ParticleSystem, continued
 from particles.timestep import source_bound
@@ -36,9 +39,14 @@ __all__ = [
     "MindlinFriction",
     "ParticleError",
     "ParticleSystem",
+    "StepLimit",
+    "StiffnessNetwork",
     "Wall",
     "box",
     "continued",
     "lattice",
+    "packing_limit",
+    "sharp_limit",
     "source_bound",
+    "stiffness_network",
 ]

@@ -10,6 +10,8 @@ from particles.state import Grains
 
 SOURCE_FACTOR = 0.5
 ALLOWED_OVERLAP = 0.05  # over the smallest radius
+# Share of the dashpots in the limit, `particles.stability`: they see a velocity that is late or guessed ahead.
+DASHPOT_SHARE = {"leapfrog": 1.0, "velocity_verlet": 2.0}
 
 
 def source_bound(grains: Grains, contact: Contact, *, factor: float = SOURCE_FACTOR) -> float:
