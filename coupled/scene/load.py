@@ -24,7 +24,8 @@ def load_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
     """Read, complete and check a scene.
 
     A scene that names a bed takes `units`, `gravity`, `box`, `contact` and `damping` from it
-    unless it has its own. Overrides act after that; those that start with ``bed.`` act on the bed.
+    unless it has its own; if its own `contact` has nothing but `pairs`, they are added to the bed's
+    contact law. Overrides act after that; those that start with ``bed.`` act on the bed.
 
     Parameters
     ----------
@@ -99,6 +100,9 @@ def _resolve_bed(
     for key in INHERITED:
         if key in tables:
             data.setdefault(key, tables[key])
+    settled, own = tables.get("contact"), data.get("contact")
+    if settled is not None and isinstance(own, dict) and list(own) == ["pairs"] and isinstance(own["pairs"], list):
+        data["contact"] = settled | {"pairs": [*settled["pairs"], *own["pairs"]]}
 
 
 def _bed_name(data: dict[str, Any], own: list[Override]) -> str | None:

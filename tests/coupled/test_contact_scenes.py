@@ -1,6 +1,7 @@
 """Contact laws asked for in a scene file: numbers in, physics out."""
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -318,15 +319,18 @@ def test_a_table_is_built_only_for_pairs_and_changes_no_bit(tmp_path: Path) -> N
 
 
 def test_run_with_materials_on_a_bed_goes_on_to_the_same_bits(tmp_path: Path) -> None:
-    """The bed is settled with one law; the scene on it tells glued grains and walls apart and is resumed."""
+    """The bed tells walls apart, the scene on it glued grains as well, as its template says; it is resumed."""
     path = write_template("tube", tmp_path / "tube.toml")
-    sets = [
-        "bed.time.duration=0.1",
-        "output.figures=false",
-        "contact.pairs=[{between=['grains','structure'],friction=0.2},{between=['grains','walls'],friction=0.3}]",
-    ]
+    text = re.sub(r"^# (\[\[contact|between|friction = 0.3)", r"\1", path.read_text(), flags=re.MULTILINE)
+    path.write_text(text + '[[bed.contact.pairs]]\nbetween = ["grains", "walls"]\nfriction = 0.5\n')
+    sets = ["bed.time.duration=0.5", "output.figures=false", "output.checkpoint_interval=0.01"]
     options = {"threads": 1, "progress": False}
     scene = load_scene(path, [*sets, "time.duration=0.04"])
+    assert [(set(pair.between), pair.friction) for pair in scene.contact.pairs] == [
+        ({"grains", "walls"}, 0.5),
+        ({"grains", "structure"}, 0.3),
+    ]
+    assert scene.contact.normal_stiffness == scene.bed.contact.normal_stiffness
     whole = run_scene(scene, out=tmp_path / "runs" / "whole", **options)
     half = load_scene(path, [*sets, "time.duration=0.02"])
     parts = run_scene(half, out=tmp_path / "runs" / "parts", **options)

@@ -104,10 +104,9 @@ def _check_tangential_kind(contact: Contact) -> None:
     for name, instead in zip(wrong, right, strict=True):
         value = getattr(contact, name)
         if value is not None:
-            beside = right[0] if contact.given_in(right[0]) is not None else 'normal = "hertz"'
-            raise refusal(
-                f"contact.{name}", value, f"does not go with contact.{beside}; give contact.{instead} or remove this"
-            )
+            beside = contact.given_in(right[0]) or 'contact.normal = "hertz"'
+            remedy = "keep one" if name == wrong[0] else f"give contact.{instead} or remove this"
+            raise refusal(f"contact.{name}", value, f"does not go with {beside}; {remedy}")
 
 
 def _check_tangential_springs(contact: Contact) -> None:
