@@ -56,6 +56,15 @@ def cell_nodes(domain: dolfinx.mesh.Mesh) -> NDArray[np.int32]:
     return dofmap.array.reshape(cells.size_local + cells.num_ghosts, -1)
 
 
+def cell_dofs(space: fem.FunctionSpace) -> NDArray[np.int32]:
+    """Local nodes of the unknowns of this rank's cells, ghosts included, shape (cells, nodes)."""
+    dofmap = space.dofmap.list
+    if isinstance(dofmap, np.ndarray):
+        return dofmap
+    cells = space.mesh.topology.index_map(space.mesh.topology.dim)
+    return dofmap.array.reshape(cells.size_local + cells.num_ghosts, -1)
+
+
 def interpolation_points(space: fem.FunctionSpace) -> NDArray[np.float64]:
     """Reference points of the nodes of a cell, in the order of the cell's unknowns."""
     points = space.element.interpolation_points

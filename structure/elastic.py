@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from meshes import StructureMesh
-from structure import checks, forms, modes
+from structure import checks, modes
 from structure.boundary import agreed_force, boundary_exchange
 from structure.discrete import DiscreteBody
+from structure.elements import ElementName, element_of
 from structure.errors import StructureError
 from structure.load_vectors import LoadVectors
 from structure.loads import Load
@@ -39,6 +40,9 @@ class ElasticStructure:
         What it is made of, Rayleigh damping or None, Newmark's parameters, external loads.
     time_step : float
         Length [s] of every step.
+    element : {"standard", "enhanced"}
+        Displacements alone, or, for quadrilaterals of order 1, strains enhanced so that a coarse mesh
+        bends as it should, also near nu = 0.5.
     ledger : bool
         Keep the sums of work and loss that `energies` reports.
 
@@ -60,6 +64,7 @@ class ElasticStructure:
         damping: Rayleigh | None = None,
         scheme: Newmark = Newmark(),
         loads: Sequence[Load] = (),
+        element: ElementName = "standard",
         ledger: bool = True,
     ) -> None:
         checks.positive("time_step", time_step, "s")
@@ -67,7 +72,8 @@ class ElasticStructure:
         self.material, self.damping, self.time_step = material, damping, float(time_step)
         self._body = DiscreteBody(mesh, material.density)
         self.mass = self._body.mass
-        self._stiffness = forms.stiffness_matrix(self._body.space, material, mesh.order)
+        self._element = element_of(element, self._body, material)
+        self._stiffness = self._element.stiffness_matrix()
         self._stepper = NewmarkStepper(
             mass=self._body.mass_matrix,
             stiffness=self._stiffness,
@@ -284,7 +290,7 @@ class ElasticStructure:
 
     def _stress_probe(self) -> StressProbe:
         if self._probe is None:
-            self._probe = StressProbe(self._body, self.material)
+            self._probe = StressProbe(self._body, self.material, self._element)
         return self._probe
 
 

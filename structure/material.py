@@ -21,7 +21,8 @@ class PlaneStrain:
     Parameters
     ----------
     youngs_modulus : E [Pa], > 0
-    poissons_ratio : nu [-], -1 < nu < 0.5; Q4 elements lock as nu approaches 0.5
+    poissons_ratio : nu [-], -1 < nu < 0.5; near 0.5 (tested to 0.4999) standard elements of order 1
+        lock, enhanced quadrilaterals do not
     density : rho [kg/m^3], > 0
 
     Source: G 2.2, with the plane strain matrix in place of G 2.137.
@@ -45,6 +46,12 @@ class PlaneStrain:
         """Lame's ``lam = E nu/((1+nu)(1-2nu))`` and ``mu = E/(2(1+nu))`` [Pa]."""
         e, nu = self.youngs_modulus, self.poissons_ratio
         return e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu))
+
+    @property
+    def elasticity(self) -> NDArray[np.float64]:
+        """Matrix (3, 3) [Pa] from (eps_xx, eps_yy, gamma_xy) to (sigma_xx, sigma_yy, sigma_xy)."""
+        lam, mu = self.lame
+        return np.array([[lam + 2 * mu, lam, 0.0], [lam, lam + 2 * mu, 0.0], [0.0, 0.0, mu]])
 
     def stress(self, strain: NDArray[np.float64]) -> NDArray[np.float64]:
         """Stress [Pa] (..., 4) as xx, yy, xy, zz of the strain (..., 3) as xx, yy, xy (tensor)."""

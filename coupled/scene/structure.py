@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from coupled.scene.refusal import refusal
 from coupled.scene.shape import Beam, Shape, Tube
 from coupled.scene.types import Count, NonNegative, Number, Positive, Table, Vector
 
@@ -106,6 +107,9 @@ class Structure(Table):
     density: Positive | None = Field(None, description="mass per volume [kg/m3]")
     youngs_modulus: Positive | None = Field(None, description="Young's modulus E [Pa]")
     poissons_ratio: Annotated[Number, Field(gt=-1, lt=0.5)] | None = Field(None, description="Poisson's ratio nu [-]")
+    element: Literal["standard", "enhanced"] | None = Field(
+        None, description="formulation of elastic cells; 'enhanced' lets coarse quadrilaterals bend"
+    )
     tube: Tube | None = Field(None, description="a ring")
     beam: Beam | None = Field(None, description="a rectangle")
     placement: Placement = Field(default_factory=Placement, description="start of the centroid")
@@ -117,11 +121,32 @@ class Structure(Table):
 
     @model_validator(mode="before")
     @classmethod
-    def _write_newmark(cls, data: Any) -> Any:
-        """Write the scheme of an elastic structure when it is not given."""
-        if isinstance(data, dict) and data.get("kind") == "elastic" and "newmark" not in data:
-            return {**data, "newmark": {}}
+    def _write_numerics(cls, data: Any) -> Any:
+        """Write element and scheme of an elastic structure when they are not given."""
+        if isinstance(data, dict) and data.get("kind") == "elastic":
+            return {"element": "standard", "newmark": {}, **data}
         return data
+
+    @model_validator(mode="after")
+    def _element_fits(self) -> Structure:
+        """Check that the element is one for this kind and these cells."""
+        if self.element is None:
+            return self
+        if self.kind != "elastic":
+            raise refusal(
+                "structure.element",
+                self.element,
+                f'means nothing for kind = "{self.kind}"; remove it or change structure.kind',
+            )
+        shape = self.tube or self.beam
+        if self.element == "enhanced" and shape is not None and (shape.cell, shape.order) != ("quadrilateral", 1):
+            raise refusal(
+                "structure.element",
+                self.element,
+                f"is for quadrilaterals of order 1, not for a {shape.cell} of order {shape.order}; "
+                'give "standard" or change cell and order',
+            )
+        return self
 
     @property
     def shape(self) -> Shape:
