@@ -169,6 +169,7 @@ def _structure(scene: Scene, mesh: meshes.StructureMesh) -> Structure:
         else fem.Rayleigh(mass_factor=table.rayleigh.mass_factor, stiffness_factor=table.rayleigh.stiffness_factor),
         scheme=fem.Newmark(beta=table.newmark.beta, gamma=table.newmark.gamma),
         loads=loads,
+        element=table.element,
     )
     if table.initial is not None:
         body.release_from_mode(table.initial.mode, table.initial.amplitude)
