@@ -87,3 +87,20 @@ def packing(
     velocity, spin = speed * rng.standard_normal((n, 2)), speed / smallest * rng.standard_normal(n)
     grains = Grains.discs(position, radius, 1600.0, velocity=velocity, spin=spin)
     return grains, pitch * columns, pitch * (n // columns)
+
+
+def balance(system: ParticleSystem) -> float:
+    """Stored energies and losses less works [J/m]; constant."""
+    return sum(-value if name.startswith("work") else value for name, value in system.energies().items())
+
+
+def losses(system: ParticleSystem) -> dict[str, float]:
+    return {name[5:]: value for name, value in system.energies().items() if name.startswith("loss")}
+
+
+def only(channel: str, system: ParticleSystem, *, share: float) -> float:
+    """The loss of one channel, when the others together are below a share of it."""
+    found = losses(system)
+    loss = found.pop(channel)
+    assert sum(abs(other) for other in found.values()) < share * loss
+    return loss

@@ -1,31 +1,78 @@
-"""The energy ledger: its sum is kept, and each channel is checked in a case that has only it."""
+"""The energy ledger as a whole: what its sum is kept to, and what moving boundaries put in."""
 
+import hypothesis.strategies as st
 import numpy as np
 import pytest
-from discs import FLOOR, full_law, normal_only, packing, resting_disc
+from discs import FLOOR, balance, full_law, losses, normal_only, packing, resting_disc
+from every_law import EPS, MANY, Pair, any_pair, decades, or_none
+from hypothesis import given
 
-from particles import Grains, ParticleSystem, Wall, box
-from particles.contact import recipe
+from particles import Grains, Wall, box
 
 G = 9.81
 STORED = ("kinetic", "rotational", "gravity", "normal_springs", "tangential_springs", "rolling_springs")
 
 
-def balance(system: ParticleSystem) -> float:
-    """Stored energies and losses less works [J/m]; constant."""
-    return sum(-value if name.startswith("work") else value for name, value in system.energies().items())
+@MANY
+@given(pair=any_pair(overlap=decades(-4.0, -1.0), zeta=or_none(decades(-4.0, -0.2))), heavy=st.booleans())
+def test_balance_of_a_normal_contact_is_exact(pair: Pair, heavy: bool) -> None:
+    """A disc let go from an overlapped floor, linear spring and dashpot: every step balances to round-off.
+
+    The works are trapezoidal, and so is the change of a linear spring's energy where the normal does not turn.
+    """
+    mass, radius = pair.mass[0], pair.radius
+    grains = Grains.discs([[0.0, radius - pair.delta]], radius, pair.density)
+    weight = 0.1 * pair.k * pair.delta if heavy else 0.0
+    c_n = 2.0 * pair.zeta * np.sqrt(mass * pair.k)
+    dt = 0.1 * np.sqrt(mass / pair.k)
+    system = normal_only(
+        grains, k_n=pair.k, c_n=c_n, may_pull=pair.may_pull, walls=[FLOOR], gravity=(0.0, -weight / mass), time_step=dt
+    )
+    system.start()
+    scale = 0.5 * pair.k * pair.delta**2
+    start = balance(system)
+    rounding = EPS * radius / pair.delta  # of the overlap, felt in its energy
+    for step in range(1, 15):  # it opens after 15.7 at least
+        system.advance(1)
+        assert abs(balance(system) - start) <= 8.0 * step * rounding * scale + 8.0 * EPS * abs(start)
 
 
-def losses(system: ParticleSystem) -> dict[str, float]:
-    return {name[5:]: value for name, value in system.energies().items() if name.startswith("loss")}
-
-
-def only(channel: str, system: ParticleSystem, *, share: float) -> float:
-    """The loss of one channel, when the others together are below a share of it."""
+@pytest.mark.parametrize("eta_r", [0.0, 0.3])
+@pytest.mark.parametrize("mu", [0.2, 1e6])
+def test_balance_of_a_rolling_and_sliding_disc_is_exact(mu: float, eta_r: float) -> None:
+    """A disc at its resting overlap on a floor that is suddenly tilted: springs, dashpots, limits and drag of spin."""
+    radius, k_n = 0.03, 6.5e5
+    grains = resting_disc(radius=radius, mass=0.5, gravity=G, k_n=k_n)
+    system = full_law(
+        grains, k_n=k_n, k_t=1e5, c_n=10.0, c_t=5.0, mu=mu, mu_r=0.02, eta_r=eta_r, k_r=20.0, alpha_r=0.5,
+        walls=[FLOOR], gravity=(0.9 * G, -G), time_step=1e-4,
+    )  # fmt: skip
+    system.start()
+    start, worst = balance(system), 0.0
+    steps = 2000
+    for _ in range(steps // 50):
+        system.advance(50)
+        worst = max(worst, abs(balance(system) - start))
     found = losses(system)
-    loss = found.pop(channel)
-    assert sum(abs(other) for other in found.values()) < share * loss
-    return loss
+    assert found["global_damping"] > 0.0
+    assert (found["sliding"] > 0.0) == (mu < 1.0)
+    # A few roundings of the turned-over energy at every step.
+    assert worst < 4.0 * steps * EPS * system.energies()["kinetic"]
+
+
+HALF_STEP_MISSING = pytest.mark.xfail(strict=True, reason="start() keeps no dashpot forces for the first trapezoid")
+
+
+@HALF_STEP_MISSING
+def test_balance_counts_dashpots_from_the_first_moment() -> None:
+    """Discs that are given in contact and in motion: the first step balances like all others."""
+    radius = 0.01
+    grains = Grains.discs([[0.0, 0.99 * radius]], radius, 1000.0, velocity=[0.0, -0.1])
+    system = normal_only(grains, k_n=1e5, c_n=20.0, walls=[FLOOR], time_step=5e-6)
+    system.start()
+    start = balance(system)
+    system.advance(1)
+    assert balance(system) == pytest.approx(start, rel=1e-13)
 
 
 def shaken_packing(dt: float, duration: float) -> tuple[float, float]:
@@ -74,85 +121,6 @@ def test_nothing_is_lost_without_dissipation() -> None:
     assert errors[-1] < 1e-6
     # The kinks where contacts begin and end fall anywhere in a step: single refinements scatter.
     assert np.polyfit(np.log2(steps), np.log2(errors), 1)[0] == pytest.approx(2.0, abs=0.2)
-
-
-def test_normal_dashpot_takes_what_the_bounce_lacks() -> None:
-    mass, speed, k_n, e = 0.08, 0.2, 6.5e4, 0.5
-    c_n = recipe.damping_from_restitution(restitution=e, effective_mass=mass, stiffness=k_n, may_pull=False)
-    grains = Grains.discs([[0.0, 0.005]], 0.005, mass / (np.pi * 0.005**2), velocity=[[0.0, -speed]])
-    system = normal_only(grains, k_n=k_n, c_n=c_n, walls=[FLOOR], time_step=1e-6)
-    system.advance(8000)
-    assert system.look().count == 0
-    # omega_0 dt = 9e-4: the lag of the dashpot is of order 1.
-    assert only("normal_dashpot", system, share=1e-12) == pytest.approx(0.5 * mass * speed**2 * (1 - e**2), rel=1e-3)
-
-
-SLIDER = {"radius": 0.03, "mass": 0.5, "gravity": G, "k_n": 6.5e7}
-SLIP = 0.2  # initial slip velocity of the contact point
-
-
-def slider(**law: float) -> ParticleSystem:
-    """A resting disc that is set to spin: it slips, then rolls on. Its slip has the mass m/3."""
-    grains = resting_disc(**SLIDER, spin=-SLIP / SLIDER["radius"])
-    return full_law(grains, k_n=SLIDER["k_n"], **law, walls=[FLOOR], gravity=(0.0, -G), time_step=2e-6)
-
-
-def test_sliding_takes_friction_times_distance() -> None:
-    mu, mass = 0.3, SLIDER["mass"]
-    system = slider(k_t=4e6, mu=mu)
-    duration = 0.5 * SLIP / (3.0 * mu * G)  # half the time to rolling
-    system.advance(round(duration / 2e-6))
-    distance = SLIP * duration - 0.5 * 3.0 * mu * G * duration**2
-    # The spring keeps mu m g/k_t = 4e-7 m of the distance, 1e-4 of it; lever arm 1e-6.
-    assert only("sliding", system, share=1e-9) == pytest.approx(mu * mass * G * distance, rel=3e-4)
-
-
-def test_tangential_dashpot_takes_the_energy_of_the_slip() -> None:
-    mass = SLIDER["mass"]
-    k_t = 1e4
-    system = slider(k_t=k_t, c_t=2.0 * np.sqrt(k_t * mass / 3.0), mu=1e6)
-    system.advance(60_000)
-    # Kinetic energy (m/3) s^2/2 of the slip; omega dt = 5e-4, order 1.
-    assert only("tangential_dashpot", system, share=1e-6) == pytest.approx(mass / 6.0 * SLIP**2, rel=1e-3)
-
-
-def test_rolling_dashpot_takes_the_energy_of_a_slow_roll() -> None:
-    radius, mass, v0 = 0.005, 0.083, 0.002
-    grains = resting_disc(radius=radius, mass=mass, gravity=G, k_n=6.5e6, vx=v0, spin=-v0 / radius)
-    system = full_law(
-        grains, k_n=6.5e6, k_t=3e5, mu=1e6, mu_r=1e6, eta_r=0.5, k_r=8.1e-2, walls=[FLOOR], gravity=(0.0, -G),
-        time_step=5e-6,
-    )  # fmt: skip
-    system.advance(round(0.5 / 5e-6))
-    assert only("rolling_dashpot", system, share=1e-6) == pytest.approx(0.75 * mass * v0**2, rel=1e-3)
-
-
-def test_rolling_slip_takes_the_limit_moment_times_the_angle() -> None:
-    radius, mass, v0, mu_r = 0.005, 0.083, 0.3, 0.2
-    grains = resting_disc(radius=radius, mass=mass, gravity=G, k_n=6.5e6, vx=v0, spin=-v0 / radius)
-    system = full_law(
-        grains, k_n=6.5e6, k_t=3e5, mu=0.8, mu_r=mu_r, k_r=8.1, walls=[FLOOR], gravity=(0.0, -G), time_step=5e-6
-    )
-    system.advance(round(0.1 / 5e-6))
-    angle = -system.grains.theta[0]
-    # All of the angle but M/k_r = 1e-4 rad of some 4 rad; lever arm 1e-5.
-    assert only("rolling_slip", system, share=1e-6) == pytest.approx(mu_r * radius * mass * G * angle, rel=1e-3)
-
-
-def test_global_damping_takes_energy_exponentially() -> None:
-    alpha_t, alpha_r, v0, spin, duration = 3.0, 5.0, 2.0, 40.0, 0.2
-    errors = []
-    for dt in (4e-4, 2e-4, 1e-4):
-        grains = Grains.discs([[0.0, 0.0]], 0.01, 1600.0, velocity=[[v0, 0.0]], spin=spin)
-        system = full_law(grains, k_n=1e4, k_t=1e3, mu=0.5, alpha_t=alpha_t, alpha_r=alpha_r, time_step=dt)
-        system.advance(round(duration / dt))
-        mass, inertia = system.grains.mass[0], system.grains.inertia[0]
-        expected = 0.5 * mass * v0**2 * (1.0 - np.exp(-2.0 * alpha_t * duration))
-        expected += 0.5 * inertia * spin**2 * (1.0 - np.exp(-2.0 * alpha_r * duration))
-        errors.append(abs(only("global_damping", system, share=1e-12) / expected - 1.0))
-    # The drag takes the velocity of half a step before: order 1.
-    assert errors[-1] < alpha_r * 1e-4
-    assert -np.diff(np.log2(errors)) == pytest.approx(np.ones(2), abs=0.1)
 
 
 def test_moving_wall_does_the_work_it_gives() -> None:
