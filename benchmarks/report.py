@@ -49,7 +49,16 @@ FURTHER = {
     "rebuild_share_shaken": "%",
     "first_start_seconds": "s",
     "peak_memory_1e6_discs": "MiB",
-}
+    "ratio_liggghts": "1",
+    "ratio_lammps_granular_2_ranks": "1",
+    "ratio_lammps_hooke_history_2_ranks": "1",
+    "ratio_lammps_granular_1k": "1",
+    "ratio_lammps_hooke_history_1k": "1",
+    "ratio_liggghts_1k": "1",
+    "ratio_lammps_granular_105k": "1",
+    "ratio_lammps_hooke_history_105k": "1",
+    "ratio_liggghts_105k": "1",
+}  # a row without a value is left out
 
 
 def machine() -> dict[str, object]:
@@ -77,9 +86,18 @@ def entry(name: str, value: float | None) -> dict[str, object]:
     }  # fmt: skip
 
 
-def _joined(before: Iterable[Rate], now: Iterable[Rate]) -> list[Rate]:
-    """Rates of one file: a run measured now takes the place of the same run before."""
-    return list({(rate["what"], rate["discs"], rate["threads"]): rate for rate in [*before, *now]}.values())
+def _joined(before: Iterable[Rate], now: Iterable[Rate], *key: str) -> list[Rate]:
+    """Rates of one file: a run measured now takes the place of the run before that has the same `key`."""
+    return list({tuple(rate[name] for name in key): rate for rate in [*before, *now]}.values())
+
+
+def joined_peers(now: Mapping[str, Any]) -> dict[str, object]:
+    """What the file holds of other codes, with the runs of now in place of the same runs before."""
+    before = read().get("peers", {}) if RESULTS.exists() else {}
+    return {
+        "versions": before.get("versions", {}) | now["versions"],
+        "runs": _joined(before.get("runs", []), now["runs"], "code", "discs", "cores"),
+    }
 
 
 def write(
@@ -93,12 +111,11 @@ def write(
     content: dict[str, object] = {
         name: entry(name, values.get(name, before.get(name, {}).get("value"))) for name in GOALS
     }
-    last = before.get("further", {})
+    last = {name: row["value"] for name, row in before.get("further", {}).items()} | dict(values)
     content["further"] = {
-        name: {"value": values.get(name, last.get(name, {}).get("value")), "unit": unit}
-        for name, unit in FURTHER.items()
+        name: {"value": last[name], "unit": unit} for name, unit in FURTHER.items() if last.get(name) is not None
     }
-    content["rates"] = _joined([] if anew else before.get("rates", []), rates)
+    content["rates"] = _joined([] if anew else before.get("rates", []), rates, "what", "discs", "threads")
     content |= {name: before[name] for name in before if name not in content}
     content |= more | {"machine": machine(), "versions": versions()}
     RESULTS.parent.mkdir(exist_ok=True)
@@ -131,8 +148,11 @@ def show() -> None:
     for rate in content.get("rates", []):
         name = f"{rate['what']}, {rate['discs']} discs, {rate['threads']} thread{'s' * (rate['threads'] > 1)}"
         table.add_row(name, f"{rate['particle_steps_per_second']:.3g}", "1/s", "", "")
-    for name, rate in content.get("peers", {}).get("particle_steps_per_second", {}).items():
-        table.add_row(name, f"{rate:.3g}", "1/s", "", "")
+    for rate in content.get("peers", {}).get("runs", []):
+        name = (
+            f"{rate['code']} beside the others, {rate['discs']} discs, {rate['cores']} core{'s' * (rate['cores'] > 1)}"
+        )
+        table.add_row(name, f"{rate['particle_steps_per_second']:.3g}", "1/s", "", "")
     console = Console(width=110)
     console.print(table)
     if (load := content["machine"]["load_average"]) > QUIET:

@@ -42,11 +42,11 @@ def main() -> None:
     more: dict[str, object] = {}
     if complete and peers.installed():
         with console.status("measuring LAMMPS"):
-            ratios, more["peers"] = peers.measure()
-        values |= ratios
+            comparison = peers.measure()
+        values |= comparison.ratios
+        more["peers"] = report.joined_peers(comparison.section)
     report.write(values, rates.rows, anew=complete, **more)
     report.show()
-    peers.mention_liggghts()
     if "sizes" in chosen:
         console.print(f"drawn: {figure.draw(report.read())}")
 

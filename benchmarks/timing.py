@@ -2,12 +2,14 @@
 
 import statistics
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
+from typing import TypeVar
 from unittest import mock
 
 from particles import ParticleSystem
 
 Task = Callable[[], float]
+Name = TypeVar("Name", bound=Hashable)
 
 
 def seconds(system: ParticleSystem, steps: int) -> float:
@@ -37,9 +39,9 @@ def rebuild_share(system: ParticleSystem, steps: int) -> float:
     return 100.0 * spent / whole
 
 
-def interleaved(tasks: Mapping[str, Task], rounds: int) -> dict[str, float]:
+def interleaved(tasks: Mapping[Name, Task], rounds: int) -> dict[Name, float]:
     """Median of each task over rounds in which all tasks take turns, after one round unrecorded."""
-    taken: dict[str, list[float]] = {name: [] for name in tasks}
+    taken: dict[Name, list[float]] = {name: [] for name in tasks}
     for turn in range(rounds + 1):
         for name, task in tasks.items():
             value = task()
