@@ -11,6 +11,8 @@ from particles.contact.rolling import ConstantTorqueRolling, ElasticPlasticRolli
 from particles.contact.tangential import CoulombFriction, MindlinFriction
 from particles.errors import ParticleError
 from particles.kernels.laws.response import Laws
+from particles.kernels.laws.rolling import DampedRolling
+from particles.kernels.laws.rolling import ElasticPlasticRolling as ElasticPlastic
 
 NormalLaw: TypeAlias = LinearSpringDashpot | HertzSpringDashpot
 TangentialLaw: TypeAlias = CoulombFriction | MindlinFriction
@@ -99,12 +101,15 @@ class ContactTable:
             for b, model in enumerate(row):
                 if model != self.rows[b][a]:
                     raise ParticleError(f"the contact laws of materials {a}, {b} and {b}, {a} differ: make them equal")
-        self.spins, self.rolls, self.damps_rolling = (
-            self._shared("spins"),
-            self._shared("rolls"),
-            self._shared("damps_rolling"),
-        )
-        self._numbers = _stacked([[model.numbers() for model in row] for row in self.rows])
+        self.spins, self.rolls = self._shared("spins"), self._shared("rolls")
+        self.damps_rolling = any(model.damps_rolling for model in self.models())
+        self._numbers = _stacked([[self._with_dashpot(model.numbers()) for model in row] for row in self.rows])
+
+    def _with_dashpot(self, laws: Laws) -> Laws:
+        """A rolling spring with a dashpot of zero where other pairs have one."""
+        if self.damps_rolling and isinstance(laws.rolling, ElasticPlastic):
+            return laws._replace(rolling=DampedRolling(*laws.rolling, 0.0))
+        return laws
 
     def _shared(self, feature: str) -> bool:
         found = {getattr(model, feature) for model in self.models()}

@@ -407,12 +407,6 @@ BAD: dict[str, tuple[dict[str, Any], dict[str, Any], str, tuple[str, ...]]] = {
         "contact.pairs.0.tangential_stiffness",
         ("friction = 0.2",),
     ),
-    "rolling dashpot of some": (
-        SURFACES,
-        {"contact.rolling_friction": 0.2, "contact.pairs.2.rolling_damping_ratio": 0.3},
-        "contact.rolling_damping_ratio",
-        ("to all or to none",),
-    ),
     "row with the name of another material": (SURFACES, {"rows.0.name": "walls"}, "rows.0.name", ("taken",)),
     "constants of an unknown material": (
         HERTZ,

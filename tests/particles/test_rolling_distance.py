@@ -6,9 +6,18 @@ disc, so phi = 3/4 m V0^2/(mu_r r m g), up to the elastic angle mu_r r m g/k_r.
 
 import numpy as np
 import pytest
-from discs import FLOOR, full_law, resting_disc
+from discs import FLOOR, by_number, full_law, resting_disc
 
-from particles import ParticleSystem
+from particles import (
+    ContactModel,
+    ContactTable,
+    CoulombFriction,
+    ElasticPlasticRolling,
+    Grains,
+    LinearSpringDashpot,
+    ParticleSystem,
+    Wall,
+)
 
 RADIUS, DENSITY, G, DT = 0.005, 1056.0, 9.81, 2e-5
 MASS = np.pi * RADIUS**2 * DENSITY
@@ -96,3 +105,29 @@ def test_period_does_not_depend_on_the_dashpot() -> None:
     damped, _, _ = ringing(0.1)
     # Linear oscillator: sqrt(1 - zeta^2) with zeta near 0.1 changes it by 0.5 %.
     assert damped == pytest.approx(undamped, rel=1e-2)
+
+
+def test_pairs_with_and_without_dashpot_share_a_table() -> None:
+    """Two discs far apart on one floor, one with the dashpot: each moves as it does alone."""
+
+    def model(eta_r: float) -> ContactModel:
+        return ContactModel(
+            normal=LinearSpringDashpot(stiffness=LAW["k_n"], damping=LAW["c_n"]),
+            tangential=CoulombFriction(stiffness=LAW["k_t"], damping=LAW["c_t"], friction=LAW["mu"]),
+            rolling=ElasticPlasticRolling(friction=0.5, damping_ratio=eta_r, stiffness=LAW["k_r"]),
+        )
+
+    alone = [thrown(0.01, mu_r=0.5, eta_r=eta_r) for eta_r in (0.3, 0.0)]
+    place = [[k, alone[0].grains.y[0]] for k in range(2)]
+    arm = RADIUS - 0.5 * MASS * G / LAW["k_n"]
+    both = Grains.discs(place, RADIUS, DENSITY, velocity=[[0.01, 0.0]] * 2, spin=-0.01 / arm, material=[0, 1])
+    damped, undamped = model(0.3), model(0.0)
+    floor = Wall(point=(0.0, 0.0), normal=(0.0, 1.0), material=1)
+    table = ContactTable([[damped, damped], [damped, undamped]])
+    system = ParticleSystem(both, table, walls=[floor], gravity=(0.0, -G), time_step=DT)
+    for each in (*alone, system):
+        each.advance(5000)
+    turned = by_number(system, "theta")[0]
+    assert abs(turned[0] - turned[1]) > 0.1 * abs(turned[1])
+    # the same operations on both; only the sums of the two discs' places differ
+    np.testing.assert_allclose(turned, [each.grains.theta[0] for each in alone], rtol=1e-9)

@@ -140,10 +140,9 @@ def _check_rolling_kind(contact: Contact) -> None:
 
 
 def _check_rolling_springs(contact: Contact) -> None:
-    """Springs that can be had, and dashpots everywhere or nowhere."""
+    """Springs that can be had."""
     if contact.rolling == "constant_torque":
         return
-    ratios: dict[str, float] = {}
     for path, table in contact.tables():
         own = contact.numbers() | table.numbers()
         if not own.get("rolling_friction"):
@@ -154,14 +153,6 @@ def _check_rolling_springs(contact: Contact) -> None:
                 "the rolling spring cannot follow a tangential one that changes with the overlap; give it in N m/rad, "
                 'or contact.rolling = "constant_torque"',
             )
-        ratios[path] = own["rolling_damping_ratio"]
-    if len({ratio > 0.0 for ratio in ratios.values()}) > 1:
-        path = next(path for path, ratio in ratios.items() if ratio == 0.0)
-        raise refusal(
-            f"{path}.rolling_damping_ratio",
-            0.0,
-            "leaves some contacts without the rolling dashpot that others have; give it to all or to none",
-        )
 
 
 def _check_mass(scene: Scene, contact: Contact) -> None:
