@@ -38,10 +38,10 @@ class Body:
 
 @dataclass(frozen=True, kw_only=True)
 class Springs:
-    """Contact law: spring ``k delta^p``, p = 1 (linear) or 3/2 (Hertz), and a tangential spring in proportion to its slope.
+    """Contact law: spring ``k delta^p``, p = 1 (linear) or 3/2 (Hertz), tangential stiffness ``ratio`` times its slope.
 
     ``zeta``: normal dashpot over the one that is critical at every overlap; ``c_t``: tangential dashpot
-    [N s/m], of one value.
+    [N s/m], of one value. Friction is for contacts that may not pull.
     """
 
     k: float
@@ -62,7 +62,7 @@ class Springs:
 
 
 class Rebound(NamedTuple):
-    """Velocities after an impact along n and t as they were at touching, spins, contact time, deepest overlap, modes."""
+    """Velocities along n and t as they were at touching, spins, contact time, deepest overlap, modes of friction."""
 
     v_n: float
     u_t: float
@@ -97,8 +97,8 @@ Event = Callable[[Look, Floats], float]
 class Impact:
     """`first` meets `second`, or a plane if that is None, at normal speed `v_n` < 0 and tangential velocity `u_t`.
 
-    Velocities [m/s] are those of the second body against the first along n (towards it) and t (n turned to the left), `spins`
-    [rad/s] counter-clockwise. Both bodies' surfaces move with the lever arms ``r - delta/2``.
+    Velocities [m/s] are those of the second body against the first along n (towards it) and t (n turned to the
+    left), `spins` [rad/s] counter-clockwise. The surfaces turn with the lever arms ``r - delta/2``.
     """
 
     first: Body
@@ -171,6 +171,7 @@ class Impact:
         phase, t, modes, overlap = self.first_phase(), 0.0, [], 0.0
         while True:
             modes.append(phase.mode)
+            assert len(modes) < 30, "a tangential dashpot lets this contact chatter between stick and slip"
             events = phase.events(self)
             # a damped contact without tension takes several times the undamped time
             run = solve_ivp(
