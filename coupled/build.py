@@ -20,6 +20,7 @@ from coupled.laws import contact_law, interface_spring
 from coupled.model import Model, Structure
 from coupled.scene import Beam, BodyLoad, BoundaryLoad, PointLoad, RowUnder, Scene, SettledGrains
 from coupled.scene.materials import GRAINS, STRUCTURE, materials
+from coupled.step import damping_of, with_step
 from particles.beds import drop_height_on, lattice
 from particles.timestep import require_stable
 
@@ -60,6 +61,7 @@ def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI
     LeitoError, MeshError, StructureError, ParticleError
         One sentence, when the parts do not go together.
     """
+    scene = with_step(scene)
     contact = None if scene.contact is None else contact_law(scene)
     free = _free_grains(scene, bed) if comm.rank == 0 else None
     body, glued = None, None
@@ -208,9 +210,7 @@ def _particles(
         "walls": _walls(scene),
         "gravity": scene.gravity,
         "threads": threads,
-        "damping": None
-        if scene.damping is None
-        else dem.GlobalDamping(translational=scene.damping.translational, rotational=scene.damping.rotational),
+        "damping": damping_of(scene),
     }
     if isinstance(scene.grains, SettledGrains):
         system = dem.continued(bed, grains, contact, **options)

@@ -28,6 +28,7 @@ from coupled.output.writers import Writers
 from coupled.progress import RunProgress
 from coupled.scene import Scene
 from coupled.schedule import Every
+from coupled.step import with_step
 from coupled.summary import summarise, tell
 from coupled.watchdog import watch
 from particles.beds import rest_ratio
@@ -64,6 +65,7 @@ def run_scene(
     LeitoError and the errors of the rooms
         One sentence.
     """
+    scene = with_step(scene)
     threads = threads or max(1, (os.cpu_count() or 1) // comm.size)
     seconds = {"bed": 0.0}
     settled = None

@@ -2,20 +2,51 @@
 
 from __future__ import annotations
 
-from pydantic import Field
+from typing import Annotated, Any, Literal
 
-from coupled.scene.types import Flag, NonNegative, Positive, Table
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from coupled.scene.types import Flag, NonNegative, Number, Positive, Table
+
+SAFETY = 0.8  # of the limit of any packing, where the step is left to the model
+
+
+def _step_kind(step: Any) -> str:
+    return "<auto>" if step == "auto" else "<number>"
+
+
+Step = Annotated[
+    Annotated[Positive, Tag("<number>")] | Annotated[Literal["auto"], Tag("<auto>")], Discriminator(_step_kind)
+]
 
 
 class Time(Table):
     """Duration and step of the run."""
 
     duration: Positive = Field(description="simulated time [s]")
-    step: Positive = Field(description="time step of the grains [s]")
+    step: Step = Field(
+        description='time step of the grains [s], or "auto": safety times the limit that holds in every packing of them'
+    )
+    safety: Annotated[Number, Field(gt=0, le=1)] | None = Field(
+        None, description=f'share of that limit for step = "auto" [-]; absent: {SAFETY:g}'
+    )
     stop_at_rest: Positive | None = Field(
         None,
         description="stop when the mean kinetic energy per grain over the mean m |g| d falls below this [-]",
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _write_safety(cls, data: Any) -> Any:
+        """Write the safety factor of a step that is left to the model."""
+        if isinstance(data, dict) and data.get("step") == "auto":
+            return {"safety": SAFETY, **data}
+        return data
+
+    @property
+    def least_step(self) -> float:
+        """The step [s], or 0 while it is left to the model."""
+        return 0.0 if self.step == "auto" else self.step
 
 
 class Output(Table):

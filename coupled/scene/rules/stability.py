@@ -1,4 +1,4 @@
-"""The rule of the time step: not above the true limit of a single contact."""
+"""The rules of the time step: a number not above the true limit of a single contact, or left to the model."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ def check_step(scene: Scene) -> None:
     of a recipe is known only once it is evaluated, so such a scene is checked when it is built.
     """
     grains, contact = scene.first_grains, scene.contact
+    _check_auto(scene)
     if grains is None or contact is None or contact.normal_stiffness is None:
         return
     mass, radius = grains.smallest_mass, grains.smallest_radius
@@ -31,10 +32,18 @@ def check_step(scene: Scene) -> None:
         inertia = mass * radius**2 / 2
         limits["2 sqrt(I_min/k_r)"] = 2 * math.sqrt(inertia / contact.rolling_stiffness)
     formula, limit = min(limits.items(), key=lambda item: item[1])
-    if scene.time.step > limit:
+    if scene.time.least_step > limit:
         raise refusal(
             "time.step",
             scene.time.step,
             f"is above the stability limit {formula} = {limit:.3g} s of the smallest grain on one "
             f"contact; choose at most {limit / 4:.3g} s",
         )
+
+
+def _check_auto(scene: Scene) -> None:
+    time = scene.time
+    if time.step == "auto" and scene.first_grains is None:
+        raise refusal("time.step", "auto", "needs free grains, whose contacts set the limit; give a number in s")
+    if time.step != "auto" and time.safety is not None:
+        raise refusal("time.safety", time.safety, 'belongs to time.step = "auto"; remove it, or let the step be that')

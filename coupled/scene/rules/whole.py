@@ -38,7 +38,7 @@ def check_whole(scene: Scene) -> None:
 def check_output(scene: Scene) -> None:
     """Check times against each other."""
     time, output = scene.time, scene.output
-    if time.step > time.duration:
+    if time.least_step > time.duration:
         reason = f"is longer than time.duration = {time.duration:g} s; choose a smaller step"
         raise refusal("time.step", time.step, reason)
     if time.stop_at_rest is not None and (scene.grains is None or not any(scene.gravity)):
@@ -46,6 +46,6 @@ def check_output(scene: Scene) -> None:
         raise refusal("time.stop_at_rest", time.stop_at_rest, reason)
     for name in ("history_interval", "checkpoint_interval"):
         value = getattr(output, name)
-        if value is not None and value < time.step:
+        if value is not None and value < time.least_step:
             reason = f"is shorter than time.step = {time.step:g} s; choose at least one step"
             raise refusal(f"output.{name}", value, reason)

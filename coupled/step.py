@@ -1,0 +1,106 @@
+"""The time step of a scene: the one that is left to the model, and how far a step is from its limits."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+import particles as dem
+from coupled.laws import contact_law
+from coupled.model import Model
+from coupled.scene import RowUnder, Scene
+
+
+def with_step(scene: Scene) -> Scene:
+    """The scene, its bed included, with a number where `time.step` is "auto".
+
+    That is `time.safety` times the limit of any packing of its grains (`particles.packing_limit`):
+    before the grains have come to rest there is no network whose limit could be taken, and under
+    a structure it changes.
+
+    Raises
+    ------
+    SceneError
+        If the number does not suit the duration or the output.
+    """
+    bed = None if scene.bed is None else with_step(scene.bed)
+    if scene.time.step != "auto" and bed is scene.bed:
+        return scene
+    tables = scene.model_dump(exclude_none=True)
+    if bed is not None:
+        tables["bed"] = bed
+    if scene.time.step == "auto":
+        tables["time"]["step"] = tables["time"].pop("safety") * _packing_limit(scene)
+    return Scene.model_validate(tables)
+
+
+def damping_of(scene: Scene) -> dem.GlobalDamping | None:
+    """The global damping of a scene."""
+    given = scene.damping
+    if given is None:
+        return None
+    return dem.GlobalDamping(translational=given.translational, rotational=given.rotational)
+
+
+def _packing_limit(scene: Scene) -> float:
+    """Limit of any packing of the grains of a scene [s], from one of each kind."""
+    return dem.packing_limit(_sample(scene), contact_law(scene), damping=damping_of(scene))
+
+
+def _sample(scene: Scene) -> dem.Grains:
+    """A free grain of each size, and two neighbours of each body of prescribed ones."""
+    table, interface = scene.first_grains, scene.interface
+    radius = np.array([size.radius for size in table.sizes])
+    sample = dem.Grains.discs(np.zeros((len(radius), 2)), radius, table.density)
+    if interface is not None:
+        spacing = interface.smallest_spacing(scene.structure.shape)
+        sample = _neighbours(sample, spacing, 0.5 * (interface.diameter or spacing), Model.GLUED)
+    for number, row in enumerate(scene.rows):
+        if isinstance(row, RowUnder):
+            spacing = interface.smallest_spacing(scene.structure.shape)
+        else:
+            spacing = math.dist(row.start, row.end) / max(row.count - 1, 1) or 2.0 * row.radius
+        sample = _neighbours(sample, spacing, row.radius, Model.GLUED + 1 + number)
+    return sample
+
+
+def _neighbours(grains: dem.Grains, spacing: float, radius: float, body: int) -> dem.Grains:
+    return grains.with_prescribed([[0.0, 0.0], [spacing, 0.0]], radius, body)
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepLimits:
+    """A time step and its limits [s]; infinite without free grains.
+
+    `source` is the source's bound (C = 0.5), `single` the limit of one contact, `packing` that of any packing,
+    `network` that of the present contacts.
+    """
+
+    chosen: float
+    source: float
+    single: float
+    packing: float
+    network: dem.StepLimit
+
+    @property
+    def of_network(self) -> float:
+        """The step over the limit of the present contacts."""
+        return self.chosen / self.network.step
+
+    @property
+    def of_packing(self) -> float:
+        """The step over the limit of any packing."""
+        return self.chosen / self.packing
+
+
+def step_limits(system: dem.ParticleSystem) -> StepLimits:
+    """How far the step of a system is from its limits now."""
+    return StepLimits(
+        chosen=system.time_step,
+        source=dem.source_bound(system.grains, system.contact),
+        single=dem.source_bound(system.grains, system.contact, factor=2.0),
+        packing=dem.packing_limit(system.grains, system.contact, damping=system.damping, scheme=system.scheme),
+        network=dem.sharp_limit(system),
+    )
