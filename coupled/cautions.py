@@ -6,14 +6,21 @@ import math
 
 from coupled.build import WARNED_SHARE, Built, stable_ratio
 from coupled.observe import Observation
+from coupled.step import StepLimits, limits_of
 
 LARGE_STRAIN, LARGE_ROTATION = 0.02, 0.1
 
 
-def before(built: Built) -> list[str]:
-    """Sentences on the time step, the coupling and the damping of a scene."""
+def before(built: Built, limits: StepLimits | None = None) -> list[str]:
+    """Sentences on the time step, the coupling and the damping of a scene; `limits` are found if not given."""
     scene, said = built.scene, []
-    if built.stable_dt_ratio > 1.0:
+    limits = limits or limits_of(built.model)
+    if limits is not None and limits.of_network > 1.0:
+        said.append(
+            f"time.step is {limits.of_network:.2f} times {limits.network.step:.3g} s, the limit of the present "
+            'contacts: their fastest mode grows unless it opens them; take a smaller step, or "auto"'
+        )
+    elif built.stable_dt_ratio > 1.0:
         said.append(
             f"time.step is {built.stable_dt_ratio:.2f} times the source's bound 0.5 sqrt(m/k): watch the energy ledger"
         )

@@ -15,8 +15,8 @@ from coupled import cautions
 from coupled.build import Built, build, stable_ratio
 from coupled.contact_report import contact_rows
 from coupled.output.folder import SUMMARY
-from coupled.scene import Scene, SettledGrains
-from particles import source_bound
+from coupled.scene import Scene, SettledGrains, Time
+from coupled.step import StepLimits, limits_of, with_step
 from particles.timestep import SOURCE_FACTOR
 
 Row = tuple[str, str, str]
@@ -36,14 +36,20 @@ def check_scene(scene: Scene) -> list[Row]:
     -------
     Rows (section, quantity, value).
     """
+    asked, scene = scene.time, with_step(scene)
     settled = _settled_bed(scene)
     threads = max(1, (os.cpu_count() or 1) // MPI.COMM_WORLD.size)
     tried = scene if settled is not None else _on_lattice(scene)
     built = build(tried, bed=settled, threads=threads)
     rows = [("scene", "title", scene.title), ("scene", "models", ", ".join(models(scene)))]
-    rows += _grain_rows(built) + _structure_rows(scene, built)
+    rows += _grain_rows(built)
+    limits = limits_of(built.model)
+    if limits is not None:
+        rows += _step_rows(limits, asked)
+    notes = cautions.before(built, limits)
+    rows += _structure_rows(scene, built)
     rows += _cost_rows(scene, built, SETTLED_OVER_LOOSE if settled is None else 1.0)
-    return rows + [("note", "", sentence) for sentence in cautions.before(built)]
+    return rows + [("note", "", sentence) for sentence in notes]
 
 
 def models(scene: Scene) -> list[str]:
@@ -81,18 +87,28 @@ def _grain_rows(built: Built) -> list[Row]:
         return []
     n_free, n = system.grains.n_free, len(system.grains)
     rows = [("grains", "free, prescribed", f"{n_free}, {n - n_free}")]
-    rows += contact_rows(built.scene)
-    law = built.contact
-    if n_free:
-        bound = source_bound(system.grains, law)
-        single = source_bound(system.grains, law, factor=2.0)
-        rows += [
-            ("time step", "chosen", f"{system.time_step:.4g} s"),
-            ("time step", f"source's bound (C = {SOURCE_FACTOR:g})", f"{bound:.4g} s"),
-            ("time step", "chosen over the bound", f"{built.stable_dt_ratio:.3f}"),
-            ("time step", "limit of a single contact", f"{single:.4g} s"),
-        ]
-    return rows
+    return rows + contact_rows(built.scene)
+
+
+def _step_rows(limits: StepLimits, asked: Time) -> list[Row]:
+    """The step in use, and its share of the source's bound and of the limits of any packing and of this one."""
+    by = f" (auto: {asked.safety:g} of the limit of any packing)" if asked.step == "auto" else ""
+    network = limits.network
+    present = "no contacts yet"
+    if network.contacts:
+        present = f"{network.step:.4g} s ({network.undamped:.4g} s without dashpots), {network.contacts} contacts"
+    rows = [
+        ("chosen", f"{limits.chosen:.4g} s{by}"),
+        (f"source's bound (C = {SOURCE_FACTOR:g})", f"{limits.source:.4g} s"),
+        ("chosen over the bound", f"{limits.chosen / limits.source:.3f}"),
+        ("limit of a single contact", f"{limits.single:.4g} s"),
+        ("limit of any packing", f"{limits.packing:.4g} s"),
+        ("chosen over that", f"{limits.of_packing:.3f}"),
+        ("limit of the present contacts", present),
+    ]
+    if network.contacts:
+        rows.append(("chosen over that", f"{limits.of_network:.3f}"))
+    return [("time step", *row) for row in rows]
 
 
 def _structure_rows(scene: Scene, built: Built) -> list[Row]:

@@ -95,8 +95,11 @@ class StepLimits:
         return self.chosen / self.packing
 
 
-def step_limits(system: dem.ParticleSystem) -> StepLimits:
-    """How far the step of a system is from its limits now."""
+def limits_of(model: Model) -> StepLimits | None:
+    """How far the grains' step is from its limits now; None without free grains, and on all ranks but the first."""
+    system = model.particles
+    if system is None or system.grains.n_free == 0:
+        return None
     return StepLimits(
         chosen=system.time_step,
         source=dem.source_bound(system.grains, system.contact),

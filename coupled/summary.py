@@ -8,6 +8,7 @@ from typing import Any
 from coupled.build import Built, stable_ratio
 from coupled.contact_report import contact_numbers
 from coupled.observe import Observation
+from coupled.step import limits_of
 
 
 def summarise(
@@ -26,7 +27,7 @@ def summarise(
     seconds : dict
         Wall time per part [s].
     """
-    model, numbers = built.model, seen.numbers
+    model, numbers, limits = built.model, seen.numbers, limits_of(built.model)
     wall = sum(seconds.values())
     free = model.particles.grains.n_free if model.particles is not None else 0
     steps = model.steps_done * model.substeps
@@ -38,7 +39,10 @@ def summarise(
         "wall_seconds_by_part": seconds,
         "free_grains": free,
         "particle_steps_per_second": peaks["particle_steps"] / seconds["grains"] if seconds.get("grains") else 0.0,
+        "time_step": built.scene.time.step,
         "stable_dt_ratio": built.stable_dt_ratio,
+        "packing_dt_ratio": limits.of_packing if limits is not None else 0.0,
+        "network_dt_ratio": limits.of_network if limits is not None else 0.0,
         "stiffness_ratio_r": built.stiffness_ratio,
         "stable_ratio": stable_ratio(built.scene) if model.glued is not None else 0.0,
         "ledger_relative_error": numbers["ledger_relative_error"],
@@ -65,7 +69,7 @@ def summarise(
 
 def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
     """The lines printed at the end of a run."""
-    wall = summary["wall_seconds"]
+    wall, in_contact = summary["wall_seconds"], summary.get("network_dt_ratio", 0.0) > 0.0
     lines = [f"{summary['title']}: {summary['simulated_seconds']:g} s simulated in {wall:.1f} s"]
     if "applied_y" in summary:
         lines += [
@@ -85,6 +89,7 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
         lines.append(
             f"  particle-steps per s     {summary['particle_steps_per_second']:12.3g}       time step "
             f"{100 * summary['stable_dt_ratio']:.0f} % of the source's bound"
+            + (f", {100 * summary['network_dt_ratio']:.0f} % of the limit of its contacts" if in_contact else "")
         )
     if summary["stiffness_ratio_r"]:
         lines.append(
