@@ -1,12 +1,16 @@
-"""Materials and shapes shared by the tests of the room."""
+"""Materials and shapes shared by the tests of the room; makes its helper `held` importable."""
 
+import sys
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import meshes
 import numpy as np
 import pytest
 from structure import PlaneStrain
+
+sys.path.insert(0, str(Path(__file__).parent))
 
 
 @pytest.fixture

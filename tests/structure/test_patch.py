@@ -6,6 +6,7 @@ import pytest
 from structure import BoundaryLoad, ElasticStructure, PlaneStrain, StructureError
 
 ELEMENTS = [("quadrilateral", 1), ("triangle", 1), ("quadrilateral", 2), ("triangle", 2)]
+FORMULATIONS = [(*cells, "standard") for cells in ELEMENTS] + [("quadrilateral", 1, "enhanced")]
 
 
 def uniform_tractions(stress: np.ndarray) -> list[BoundaryLoad]:
@@ -16,9 +17,9 @@ def uniform_tractions(stress: np.ndarray) -> list[BoundaryLoad]:
     ]
 
 
-@pytest.mark.parametrize(("cell", "order"), ELEMENTS)
+@pytest.mark.parametrize(("cell", "order", "element"), FORMULATIONS)
 @pytest.mark.parametrize("distorted", [False, True])
-def test_patch(cell: str, order: int, distorted: bool, distort) -> None:
+def test_patch(cell: str, order: int, element: str, distorted: bool, distort) -> None:
     square = meshes.beam(length=1.0, height=1.0, along=4, across=4, cell=cell, order=order)
     if distorted:
         square = distort(square)
@@ -26,7 +27,7 @@ def test_patch(cell: str, order: int, distorted: bool, distort) -> None:
     material = PlaneStrain(youngs_modulus=e, poissons_ratio=nu, density=1.0)
     xx, yy, xy = 0.3, -0.2, 0.1
     loads = uniform_tractions(np.array([[xx, xy], [xy, yy]]))
-    body = ElasticStructure(square, material=material, time_step=1.0, loads=loads)
+    body = ElasticStructure(square, material=material, time_step=1.0, loads=loads, element=element)
     body.set_initial(displacement=body.static_displacement())
     data = body.fields().point_data
     # Plane strain by Hooke's law in three dimensions: eps_zz = 0.
@@ -55,10 +56,10 @@ def test_patch(cell: str, order: int, distorted: bool, distort) -> None:
     assert np.abs(body.boundary_acceleration).max() < 1e-9
 
 
-@pytest.mark.parametrize(("cell", "order"), ELEMENTS)
-def test_rigid_motion_makes_no_stress(cell: str, order: int, aluminium: PlaneStrain) -> None:
+@pytest.mark.parametrize(("cell", "order", "element"), FORMULATIONS)
+def test_rigid_motion_makes_no_stress(cell: str, order: int, element: str, aluminium: PlaneStrain) -> None:
     tube = meshes.tube(outer_radius=0.05, inner_radius=0.04, cell=cell, order=order)
-    body = ElasticStructure(tube, material=aluminium, time_step=1e-5)
+    body = ElasticStructure(tube, material=aluminium, time_step=1e-5, element=element)
     x, y = tube.points.T
     moved = np.column_stack([0.1 - 1e-3 * y, -0.2 + 1e-3 * x])
     body.set_initial(displacement=moved)

@@ -27,6 +27,11 @@ def elastic(**options) -> ElasticStructure:
     return ElasticStructure(mesh(), **({"material": PlaneStrain(**STEEL), "time_step": 1e-5} | options))
 
 
+def enhanced(**options) -> ElasticStructure:
+    other = meshes.beam(length=1.0, height=0.1, along=10, across=1, **options)
+    return ElasticStructure(other, material=PlaneStrain(**STEEL), time_step=1e-5, element="enhanced")
+
+
 def path(*rows) -> PrescribedRigid:
     return PrescribedRigid(mesh(), path=rows, time_step=1.0)
 
@@ -53,6 +58,9 @@ def path(*rows) -> PrescribedRigid:
             "point = (0.5, 0.3)",
         ),
         (lambda: elastic(loads=["gravity"]), "'gravity'"),
+        (lambda: elastic(element="reduced"), "element = 'reduced' is not known: use one of standard, enhanced"),
+        (lambda: enhanced(order=2), "not for a quadrilateral of order 2"),
+        (lambda: enhanced(cell="triangle"), "not for a triangle of order 1"),
         (lambda: elastic().advance(np.zeros((3, 2))), "boundary_force has shape (3, 2)"),
         (lambda: elastic().set_initial(displacement=np.zeros((3, 2))), "displacement"),
         (lambda: elastic().release_from_mode(0, 1e-3), "mode 0"),
