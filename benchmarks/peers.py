@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
+from functools import partial
 
 import beds
 import entrants
@@ -105,7 +106,7 @@ def compare(comparison: Comparison, size: Size, field: Sequence[Entrant]) -> Non
         engines = started(field, size, saved, stack)
         load(engines, size, float(saved[True]["grains.mass"].mean()))
         systems = entrants.ours(dict.fromkeys(entrant.rival for entrant in engines), size, saved)
-        tasks = {entrant: lambda engine=engine: engine.cost(size.steps) for entrant, engine in engines.items()}
+        tasks = {entrant: partial(engine.cost, size.steps) for entrant, engine in engines.items()}
         tasks |= {rival: per_particle_step(system, size.steps) for rival, system in systems.items()}
         cost = interleaved(tasks, size.rounds)
         ends = {entrant: engine.end_state() for entrant, engine in engines.items()}
