@@ -1,4 +1,4 @@
-"""Normal impacts, benchmarks 1 to 3 of Chung and Ooi (2011): force, time and depth in closed form, restitution as asked."""
+"""Normal impacts, benchmarks 1 to 3 of Chung and Ooi (2011): closed forms of force, time, depth; restitution as asked."""
 
 import math
 from dataclasses import replace

@@ -1,5 +1,7 @@
 """Spinning pairs, benchmarks 7 and 8 of Chung and Ooi (2011): reference solution, sliding limits, gears."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from impact_benchmarks import ALUMINIUM, COPPER, KINDS, NYLON, Benchmark, Kind, compare
@@ -7,6 +9,7 @@ from impact_benchmarks import ALUMINIUM, COPPER, KINDS, NYLON, Benchmark, Kind, 
 STEPS = 2000
 SPINS = np.array([0.5, 2.0, 5.0, 20.0])
 TWINS = Benchmark(stuff=COPPER, radius=0.1, other_radius=0.1, speed=0.4, mu=0.4, restitution=0.5)
+DEEP = replace(TWINS, speed=20.0)  # overlaps of 3 % of the radius: the lever arms and the turning normal count
 UNEQUAL = Benchmark(
     stuff=NYLON, radius=0.1, other=ALUMINIUM, other_radius=0.05, speed=0.2, mu=0.4, restitution=0.5
 )  # fmt: skip
@@ -19,6 +22,7 @@ def test_pairs_agree_with_the_reference(kind: Kind) -> None:
     cases = [
         (TWINS, TWINS.impacts(kind, spin=SPINS, partner=SPINS)),
         (TWINS, TWINS.impacts(kind, u_t=0.3, spin=SPINS, partner=-0.5 * SPINS)),
+        (DEEP, DEEP.impacts(kind, spin=50.0 * SPINS, partner=50.0 * SPINS)),
         (UNEQUAL, UNEQUAL.impacts(kind, spin=SPINS)),
         (ANVIL, ANVIL.impacts(kind, spin=SPINS)),
     ]
