@@ -18,7 +18,7 @@ def contact_rows(scene: Scene) -> list[Row]:
     if scene.contact is None:
         return []
     law = contact_law(scene)
-    usual = next(law.models())
+    usual = next(law.models_of([0]))
     several = isinstance(law, dem.ContactTable)
     rows = _law_rows(usual, "between grains: " if several else "")
     rows += [("contact", f"recipe: {name}", value) for name, value in _chosen(scene)]

@@ -19,7 +19,8 @@ def source_bound(grains: Grains, contact: Contact, *, factor: float = SOURCE_FAC
 
     The smallest mass, the smallest ``I/r^2`` of the free grains. Conservative by design with
     C = 0.5: the limit of one undamped contact with a wall is 2 sqrt(m/k_n); a grain with z
-    contacts has less. Hertz's spring is taken at an overlap of 5 % of the smallest radius. Infinite without free grains. Source: model 1.4; Gomes 2014, section 2.1.4.
+    contacts has less. Hertz's spring is taken at an overlap of 5 % of the smallest radius. Infinite
+    without free grains. Source: model 1.4; Gomes 2014, section 2.1.4.
     """
     if grains.n_free == 0:
         return math.inf
@@ -27,7 +28,7 @@ def source_bound(grains: Grains, contact: Contact, *, factor: float = SOURCE_FAC
     radius = float(grains.radius[free].min())
     rotational = float(np.min(grains.inertia[free] / grains.radius[free] ** 2))
     bound = math.inf
-    for model in contact.models():
+    for model in contact.models_of(np.unique(grains.material[free])):
         k_n = model.normal.stiffness_at(ALLOWED_OVERLAP * radius, 0.5 * radius)
         bound = min(bound, math.sqrt(float(grains.mass[free].min()) / k_n))
         if model.tangential is not None:

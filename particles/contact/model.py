@@ -1,6 +1,6 @@
 """The contact features of one scene, checked together, for one material or a table of several."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -67,8 +67,8 @@ class ContactModel:
         """Number of materials told apart."""
         return 1
 
-    def models(self) -> Iterator["ContactModel"]:
-        """The laws of all pairs of materials."""
+    def models_of(self, materials: Iterable[int]) -> Iterator["ContactModel"]:
+        """The laws between some materials and all others."""
         yield self
 
     def numbers(self) -> Laws:
@@ -121,8 +121,12 @@ class ContactTable:
 
     def models(self) -> Iterator[ContactModel]:
         """The laws of all pairs of materials."""
-        for row in self.rows:
-            yield from row
+        yield from self.models_of(range(self.materials))
+
+    def models_of(self, materials: Iterable[int]) -> Iterator[ContactModel]:
+        """The laws between some materials and all others."""
+        for a in materials:
+            yield from self.rows[a]
 
     def numbers(self) -> Laws:
         return self._numbers
