@@ -23,6 +23,7 @@ class Dense:
     law: dict[str, float]
     gravity: np.ndarray
     body: np.ndarray
+    period: tuple[float | None, float | None] = (None, None)
 
     def __post_init__(self) -> None:
         shape = (len(self.x), len(self.x) + len(self.walls))
@@ -33,6 +34,9 @@ class Dense:
         x, v, r, w = self.x, self.v, self.radius, self.omega
         n = len(x)
         apart = x[None] - x[:, None]
+        for axis, length in enumerate(self.period):
+            if length is not None:
+                apart[..., axis] -= length * np.rint(apart[..., axis] / length)
         distance = np.hypot(apart[..., 0], apart[..., 1]) + np.eye(n)
         delta = r[:, None] + r[None] - distance
         same_body = (self.body[:, None] == self.body[None]) & (self.body[:, None] >= 0)
