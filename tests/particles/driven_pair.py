@@ -7,7 +7,7 @@ import hypothesis.strategies as st
 import numpy as np
 from every_law import Pair, contact_of, decades, discs_of, system_of
 
-from particles import Grains, ParticleSystem
+from particles import Grains, ParticleSystem, Wall
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,6 +101,27 @@ def driven(
         g.omega[order] = motion[4:] / pair.radii
         system.advance(1)
         found.append(seen(system, pair))
+    return found
+
+
+def driven_at_a_wall(kind: str, pair: Pair, drive: Drive) -> list[Seen]:
+    """The first disc led at a moving wall: the contact after each of three steps, the wall as second body."""
+    along, motions = drive.along(), drive.velocities(pair)
+    grains = Grains.discs([[0.0, 0.0]], pair.radius, pair.density)
+    point = (pair.radius + drive.gap * pair.delta) * along
+    wall = Wall(point=tuple(point), normal=tuple(-along), velocity=tuple(motions[0, 2:4]), material=1)
+    system = system_of(kind, grains, contact_of(kind, pair), dt=drive.time_step(pair), walls=[wall])
+    system.start()
+    found = []
+    for motion in motions:
+        g = system.grains
+        g.vx[0], g.vy[0], g.omega[0] = motion[0], motion[1], motion[4] / pair.radius
+        system.advance(1)
+        place = np.array([system.list.walls.px[0] - g.x[0], system.list.walls.py[0] - g.y[0]])
+        delta = pair.radius - float(place @ along)
+        force = np.array([[g.fx[0], g.fy[0]], system.wall_force[0]])
+        arms = np.array([pair.radius - 0.5 * delta, 0.0])
+        found.append(Seen(delta=delta, normal=along, apart=along, arms=arms, force=force, torque=g.torque.copy()))
     return found
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import hypothesis.strategies as st
 import numpy as np
 import pytest
-from driven_pair import Drive, Seen, any_drive, driven, signed, turned, turntable
+from driven_pair import Drive, Seen, any_drive, driven, driven_at_a_wall, signed, turned, turntable
 from every_law import (
     EPS,
     KINDS,
@@ -68,6 +68,24 @@ def test_limits_are_never_passed_and_nothing_pulls(kind: str, pair: Pair, drive:
         noise = 8.0 * EPS * abs(contact.torque[0]) + float(pair.radii.max()) * noise
         if kind != "normal only":
             assert abs(contact.moment) <= mu_r * pair.reduced_radius * abs(contact.f_n) + (1.0 + mu_r) * noise
+
+
+@every_kind
+@MANY
+@given(pair=any_pair(), drive=any_drive)
+def test_walls_obey_the_same_limits(kind: str, pair: Pair, drive: Drive) -> None:
+    mu, mu_r = limits(kind, pair)
+    for contact in driven_at_a_wall(kind, pair, drive):
+        assert (contact.force[0] == -contact.force[1]).all()
+        noise = 8.0 * EPS * float(np.abs(contact.force[0]).max())
+        if contact.delta < -4.0 * EPS * pair.radius * (2.0 + abs(drive.gap) * pair.overlap):
+            assert (contact.force == 0.0).all()
+            assert (contact.torque == 0.0).all()
+        assert pair.may_pull or contact.f_n >= -noise
+        assert abs(contact.f_t) <= mu * abs(contact.f_n) + (1.0 + mu) * noise
+        if kind != "normal only":
+            noise = 8.0 * EPS * abs(contact.torque[0]) + pair.radius * noise
+            assert abs(contact.moment) <= mu_r * pair.radius * abs(contact.f_n) + (1.0 + mu_r) * noise
 
 
 @every_kind
