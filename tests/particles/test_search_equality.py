@@ -72,10 +72,9 @@ def scene(ratio: float, sides: str) -> Scene:
     grains = Grains.discs(place, radius, 1600.0, velocity=velocity, spin=spin).with_prescribed(trio, R, 0)
     grains.vx[-3:], grains.vy[-3:], grains.omega[-3:] = 0.3, -0.2, 50.0
     every = ("left", "right", "floor", "lid")
-    shown = {"walls": every, "open": ("floor",), "periodic in x": ("floor", "lid"), "periodic in both": ()}[
-        sides
-    ]
-    period = (width if "periodic" in sides else None, height if sides == "periodic in both" else None)
+    shown = {"walls": every, "open": ("floor",), "periodic in x": ("floor", "lid"), "periodic in both": ()}[sides]
+    # A period that nothing can reach across is none, and compiles nothing anew.
+    period = (width, height if sides == "periodic in both" else 1e4 * height) if "periodic" in sides else (None, None)
     return Scene(grains=grains, walls=tuple(box(width, height, shown)), period=period)
 
 
