@@ -1,4 +1,4 @@
-"""The eight benchmark impacts of Chung and Ooi (2011, Granular Matter 13:643) for discs: bodies, laws, runs.
+"""The eight benchmark impacts of Chung and Ooi (2011, Granular Matter 13:643) for discs: bodies and laws.
 
 Materials, radii, speeds, friction and restitution are theirs as they are quoted in the literature. A
 disc has the mass of their sphere (a layer 4/3 r thick) and the moment of inertia ``m r^2/2`` of a
@@ -7,27 +7,22 @@ ours: as deep at the benchmark's speed as Hertz's, with Mindlin's ratio of tange
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from impacts import Body, Impact, Springs, damping_ratio
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from particles import (
     ContactModel,
     CoulombFriction,
-    Grains,
     HertzSpringDashpot,
     LinearSpringDashpot,
     Material,
     MindlinFriction,
-    ParticleSystem,
-    Wall,
 )
 
-Floats = NDArray[np.float64]
 Kind = Literal["linear", "hertz"]
 KINDS: tuple[Kind, Kind] = ("linear", "hertz")
 RIGID = Material(youngs_modulus=1e40, poissons_ratio=0.0)  # E* and G* of the other body alone, to round-off
@@ -56,6 +51,7 @@ MAGNESIUM = Stuff(name="magnesium alloy", modulus=4.0e10, poisson=0.35, density=
 OXIDE = Stuff(name="aluminium oxide", modulus=3.8e11, poisson=0.23, density=4000.0)
 IRON = Stuff(name="cast iron", modulus=1.0e11, poisson=0.25, density=7000.0)
 ALUMINIUM = Stuff(name="aluminium alloy", modulus=7.0e10, poisson=0.33, density=2700.0)
+OTHER_ALUMINIUM = Stuff(name="aluminium alloy", modulus=7.0e10, poisson=0.30, density=2699.0)  # of benchmark 2
 STEEL = Stuff(name="steel", modulus=2.08e11, poisson=0.30, density=7850.0)
 POLYETHYLENE = Stuff(name="polyethylene", modulus=1.0e9, poisson=0.40, density=1400.0)
 NYLON = Stuff(name="nylon", modulus=2.5e9, poisson=0.40, density=1000.0)
@@ -134,86 +130,24 @@ class Benchmark:
             for u, w, w_2 in np.broadcast(u_t, spin, partner)
         ]
 
-
-def grains_before(impacts: Sequence[Impact], dt: float) -> Grains:
-    """The bodies of `impacts` side by side, each to touch within the second step, all at different parts of it.
-
-    Before a plane, the floor, they stand in a row; pairs lie along x, above one another, and their
-    centre of mass rests.
-    """
-    gap = dt * (1.0 + np.arange(1, len(impacts) + 1) * 0.6180339887 % 1.0) * np.array([-i.v_n for i in impacts])
-    first, second = impacts[0].first, impacts[0].second
-    u = np.array([(i.v_n, i.u_t) for i in impacts])
-    spins = np.array([i.spins for i in impacts])
-    apart = 4.0 * np.arange(len(impacts))
-    areal = [b.mass / (math.pi * b.radius**2) for b in (first, second) if b is not None]
-    if second is None:  # n down, t to the right: the plane's velocity against the disc is (u_t, -v_n)
-        place = np.column_stack([apart * first.radius, first.radius + gap])
-        return Grains.discs(
-            place, first.radius, areal[0], velocity=np.column_stack([-u[:, 1], u[:, 0]]), spin=spins[:, 0]
-        )
-    share, row = first.mass / (first.mass + second.mass), apart * max(first.radius, second.radius)
-    place = np.vstack([np.column_stack([-first.radius - gap, row]), np.column_stack([0.0 * gap + second.radius, row])])
-    return Grains.discs(
-        place, np.repeat([first.radius, second.radius], len(impacts)), np.repeat(areal, len(impacts)),
-        velocity=np.vstack([-(1.0 - share) * u, share * u]), spin=spins.T.ravel(),
-    )  # fmt: skip
+    def at_angles(self, kind: Kind, angles: ArrayLike) -> list[Impact]:
+        """Impacts of one resultant speed at `angles` [rad] from the normal, with the springs of the normal impact."""
+        tilted = self.impacts(kind, u_t=self.speed * np.sin(angles))
+        return [replace(i, v_n=-self.speed * float(c)) for i, c in zip(tilted, np.cos(angles), strict=True)]
 
 
-def run(impacts: Sequence[Impact], contact: ContactModel, dt: float, duration: float) -> Floats:
-    """What the code makes of `impacts` within `duration` [s] of touching: rows like `Rebound.numbers`."""
-    n, walls = len(impacts), [Wall(point=(0.0, 0.0), normal=(0.0, 1.0))] if impacts[0].second is None else []
-    system = ParticleSystem(grains_before(impacts, dt), contact, time_step=dt, walls=walls, ledger=False)
-    system.advance(math.ceil(duration / dt) + 3)
-    order = np.argsort(system.grains.number)
-    vx, vy, spin = (getattr(system.grains, name)[order] for name in ("vx", "vy", "omega"))
-    if walls:
-        return np.column_stack([vy, -vx, spin, np.zeros(n)])
-    left, right = impacts[0].first.mass, impacts[0].second.mass
-    for v in (vx, vy):  # the momentum of every pair was zero: round-off of the kicks
-        assert np.abs(left * v[:n] + right * v[n:]).max() <= 1e-13 * left * max(
-            abs(i.v_n) + abs(i.u_t) for i in impacts
-        )
-    return np.column_stack([vx[n:] - vx[:n], vy[n:] - vy[:n], spin[:n], spin[n:]])
-
-
-def compare(benchmark: Benchmark, kind: Kind, impacts: Sequence[Impact], steps: int) -> tuple[Floats, Floats, Floats]:
-    """Reference and code (n, 4) with `steps` per undamped contact, and the largest deviation of each impact.
-
-    Deviations are those of velocities and of surface speeds r omega, over the speed of the surfaces
-    against each other before the impact.
-    """
-    found = [impact.solve() for impact in impacts]
-    reference = np.array([rebound.numbers() for rebound in found])
-    dt = impacts[0].springs.duration(impacts[0].mass, benchmark.speed) / steps
-    ours = run(impacts, benchmark.contact(kind), dt, 1.05 * max(rebound.duration for rebound in found))
-    return reference, ours, deviation(impacts, reference, ours)
-
-
-def deviation(impacts: Sequence[Impact], reference: Floats, ours: Floats) -> Floats:
-    radii = (impacts[0].first.radius, impacts[0].second.radius if impacts[0].second else 0.0)
-    speed = np.array([math.hypot(i.v_n, i.look_at_start().v_t) for i in impacts])
-    return (np.abs(ours - reference) * [1.0, 1.0, *radii]).max(axis=1) / speed
-
-
-def errors(benchmark: Benchmark, kind: Kind, impacts: Sequence[Impact], steps: Sequence[int]) -> Floats:
-    """Root mean square deviation from the reference at each number of steps per contact.
-
-    The force has kinks, so the error depends on where in a step they fall: 16 copies of every impact
-    touch at different moments, and the contact time over dt keeps its fractional part 1/3.
-    """
-    found = [impact.solve() for impact in impacts]
-    copies = [impact for impact in impacts for _ in range(16)]
-    reference = np.repeat([rebound.numbers() for rebound in found], 16, axis=0)
-    duration = impacts[0].springs.duration(impacts[0].mass, benchmark.speed)
-    late = 1.05 * max(rebound.duration for rebound in found)
-    contact, result = benchmark.contact(kind), []
-    for n in steps:
-        ours = run(copies, contact, duration / (n + 1.0 / 3.0), late)
-        result.append(math.sqrt(np.mean(deviation(copies, reference, ours) ** 2)))
-    return np.array(result)
-
-
-def orders(errors: Floats) -> Floats:
-    """Orders in dt where each error was taken at half the step of the one before."""
-    return -np.diff(np.log2(errors))
+ELASTIC_PAIRS = [Benchmark(stuff=s, radius=0.01, other_radius=0.01, speed=20.0) for s in (GLASS, LIMESTONE)]
+ELASTIC_PLANES = [Benchmark(stuff=s, radius=0.1, speed=0.2) for s in (OTHER_ALUMINIUM, MAGNESIUM)]
+BOUNCES = [Benchmark(stuff=s, radius=0.0025, speed=3.9) for s in (OXIDE, IRON)]
+AT_ANGLES = [Benchmark(stuff=s, radius=0.0025, speed=3.9, mu=0.092, restitution=0.98) for s in (OXIDE, ALUMINIUM)]
+SIDEWAYS = [Benchmark(stuff=s, radius=1e-5, speed=5.0, mu=0.3) for s in (STEEL, POLYETHYLENE)]
+SPINNING = [Benchmark(stuff=s, radius=0.1, speed=0.2, mu=0.4, restitution=0.5) for s in (ALUMINIUM, NYLON)]
+TWINS = [
+    Benchmark(stuff=s, radius=0.1, other_radius=0.1, speed=0.4, mu=0.4, restitution=0.5) for s in (ALUMINIUM, COPPER)
+]
+ANVIL = replace(
+    SPINNING[0],
+    other=replace(ALUMINIUM, name="heavy aluminium", density=1000.0 * ALUMINIUM.density),
+    other_radius=0.5,
+)
+UNEQUAL = replace(SPINNING[1], other=ALUMINIUM, other_radius=0.05)

@@ -183,7 +183,7 @@ class Impact:
             name = next(n for n, times in zip(events, run.t_events, strict=True) if len(times))
             if name == "turn":
                 overlap = float(y[0])
-            if name == "end":
+            if name == "end" or (phase.opening and y[0] < 1e-9 * deep):  # an event on the very last stretch
                 break
             phase, y[6] = phase.after(name, self, y)
         return self.rebound(y, t, overlap, tuple(modes))
@@ -246,9 +246,10 @@ class Phase(NamedTuple):
             return found
         if self.mode == "slip":
             return found | {"hold": (self.slip_excess, -1.0)}
-        found["slip"] = (lambda look, y: abs(self.spring(look, y)) - look.limit, 1.0)
+        # a slider that is held starts at the limit itself: the slack keeps round-off from making it slip again at once
+        found["slip"] = (lambda look, y: abs(self.spring(look, y)) - look.limit * (1.0 + RTOL), 1.0)
         if law.c_t > 0.0:
-            total: Event = lambda look, y: abs(self.spring(look, y) + look.c_t * look.v_t) - look.limit  # noqa: E731
+            total: Event = lambda look, y: abs(self.spring(look, y) + look.c_t * look.v_t) - look.limit
             found["cap" if self.mode == "stick" else "free"] = (total, 1.0 if self.mode == "stick" else -1.0)
         return found
 

@@ -5,20 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from impact_benchmarks import (
-    ALUMINIUM,
-    KINDS,
-    OXIDE,
-    POLYETHYLENE,
-    STEEL,
-    Benchmark,
-    Kind,
-    compare,
-    deviation,
-    errors,
-    orders,
-    run,
-)
+from impact_benchmarks import ALUMINIUM, AT_ANGLES, KINDS, POLYETHYLENE, SIDEWAYS, SPINNING, Benchmark, Kind
+from impact_runs import compare, deviation, errors, orders, run
 from impacts import Impact, Springs
 from numpy.typing import NDArray
 
@@ -27,17 +15,9 @@ from particles import ContactModel, CoulombFriction, LinearSpringDashpot, Mindli
 Floats = NDArray[np.float64]
 STEPS = 2000
 ANGLES = np.radians([5.0, 25.0, 45.0, 70.0])
-AT_ANGLES = Benchmark(stuff=OXIDE, radius=0.0025, speed=3.9, mu=0.092, restitution=0.98)
-SIDEWAYS = Benchmark(stuff=STEEL, radius=1e-5, speed=5.0, mu=0.3)
-SOFTER = replace(SIDEWAYS, stuff=POLYETHYLENE)
-SPINNING = Benchmark(stuff=ALUMINIUM, radius=0.1, speed=0.2, mu=0.4, restitution=0.5)
+BALL, SPINNER = AT_ANGLES[0], SPINNING[0]
+STEEL_BALL, SOFT_BALL = SIDEWAYS
 SHALLOW = Benchmark(stuff=ALUMINIUM, radius=0.1, speed=2e-4, mu=0.3)  # overlaps 2e-6 of the radius: arms are radii
-
-
-def at_angles(kind: Kind) -> list[Impact]:
-    """One resultant speed at all angles: the springs are those of the normal impact."""
-    tilted = AT_ANGLES.impacts(kind, u_t=AT_ANGLES.speed * np.sin(ANGLES))
-    return [replace(i, v_n=-AT_ANGLES.speed * math.cos(a)) for i, a in zip(tilted, ANGLES, strict=True)]
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -45,10 +25,10 @@ def test_oblique_impacts_agree_with_the_reference(kind: Kind) -> None:
     # Of first order in dt (dashpot half a step late, Mindlin's stiffness of the end of the step): less than the
     # change within one step of the contact.
     cases = [
-        (AT_ANGLES, at_angles(kind)),
-        (SIDEWAYS, SIDEWAYS.impacts(kind, u_t=[0.5, 3.0, 8.0, 20.0])),
-        (SOFTER, SOFTER.impacts(kind, u_t=[0.5, 3.0, 8.0, 20.0])),
-        (SPINNING, SPINNING.impacts(kind, spin=[0.5, 2.0, 5.0, 20.0])),
+        (BALL, BALL.at_angles(kind, ANGLES)),
+        (STEEL_BALL, STEEL_BALL.impacts(kind, u_t=[0.5, 3.0, 8.0, 20.0])),
+        (SOFT_BALL, SOFT_BALL.impacts(kind, u_t=[0.5, 3.0, 8.0, 20.0])),
+        (SPINNER, SPINNER.impacts(kind, spin=[0.5, 2.0, 5.0, 20.0])),
     ]  # fmt: skip
     for benchmark, impacts in cases:
         _, _, off = compare(benchmark, kind, impacts, STEPS)
@@ -72,7 +52,7 @@ def test_order_in_the_time_step(kind: Kind, restitution: float, order: float) ->
 @pytest.mark.parametrize("restitution", [0.5, 1.0])
 def test_gross_sliding_is_that_of_rigid_bodies(restitution: float, kind: Kind) -> None:
     # Impulses J and mu J with J = m (1 + e) v: the disc loses mu (1 + e) v and gains the spin 2 mu (1 + e) v / r.
-    benchmark = replace(SPINNING, restitution=restitution)
+    benchmark = replace(SPINNER, restitution=restitution)
     push = benchmark.mu * (1.0 + restitution) * benchmark.speed
     u_t = push * np.array([3.5, 5.0, 20.0])
     impacts = benchmark.impacts(kind, u_t=u_t)
@@ -143,18 +123,18 @@ def test_stiff_damped_tangential_springs_give_rigid_bodies() -> None:
 
 def test_tangential_dashpot_agrees_with_the_reference() -> None:
     # A tenth of the critical dashpot: stick with it, capped at the limit, slip without it.
-    law = SPINNING.springs("linear")
-    mass = SPINNING.bodies[0].mass
+    law = SPINNER.springs("linear")
+    mass = SPINNER.bodies[0].mass
     c_t = 0.2 * math.sqrt(mass / 3.0 * law.ratio * law.k)
-    impacts = SPINNING.impacts("linear", spin=[0.5, 2.0, 4.0, 8.0, 20.0])
+    impacts = SPINNER.impacts("linear", spin=[0.5, 2.0, 4.0, 8.0, 20.0])
     impacts = [replace(i, springs=replace(law, c_t=c_t)) for i in impacts]
     contact = ContactModel(
-        normal=LinearSpringDashpot(stiffness=law.k, restitution=SPINNING.restitution),
-        tangential=CoulombFriction(stiffness=law.ratio * law.k, friction=SPINNING.mu, damping=c_t),
+        normal=LinearSpringDashpot(stiffness=law.k, restitution=SPINNER.restitution),
+        tangential=CoulombFriction(stiffness=law.ratio * law.k, friction=SPINNER.mu, damping=c_t),
     )
     found = [impact.solve() for impact in impacts]
     assert {mode for rebound in found for mode in rebound.modes} == {"stick", "capped", "slip"}
-    dt = law.duration(mass, SPINNING.speed) / STEPS
+    dt = law.duration(mass, SPINNER.speed) / STEPS
     ours = run(impacts, contact, dt, 1.05 * max(rebound.duration for rebound in found))
     assert deviation(impacts, np.array([rebound.numbers() for rebound in found]), ours).max() < 1.0 / STEPS
 
@@ -174,13 +154,13 @@ def test_without_slip_the_surface_swings() -> None:
 
 
 def test_mindlin_on_a_linear_spring_is_a_constant_stiffness() -> None:
-    impacts = SPINNING.impacts("linear", spin=[0.5, 2.0, 5.0, 20.0])
+    impacts = SPINNER.impacts("linear", spin=[0.5, 2.0, 5.0, 20.0])
     law = impacts[0].springs
-    dt = law.duration(impacts[0].mass, SPINNING.speed) / 200
-    normal = LinearSpringDashpot(stiffness=law.k, restitution=SPINNING.restitution)
+    dt = law.duration(impacts[0].mass, SPINNER.speed) / 200
+    normal = LinearSpringDashpot(stiffness=law.k, restitution=SPINNER.restitution)
     laws = (
-        CoulombFriction(stiffness=law.ratio * law.k, friction=SPINNING.mu),
-        MindlinFriction(stiffness_ratio=law.ratio, friction=SPINNING.mu),
+        CoulombFriction(stiffness=law.ratio * law.k, friction=SPINNER.mu),
+        MindlinFriction(stiffness_ratio=law.ratio, friction=SPINNER.mu),
     )
     first, second = (run(impacts, ContactModel(normal=normal, tangential=t), dt, 300 * dt) for t in laws)
     assert np.abs(first - second).max() < 1e-12 * np.abs(first).max()  # the product is formed at another place
