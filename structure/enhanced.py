@@ -52,7 +52,7 @@ class EnhancedCells:
             stress = np.abs(determinant)[:, None, None] * (modes.transpose(0, 2, 1) @ elasticity)
             own += stress @ modes
             coupling += stress @ compatible
-        self._amplitudes = -np.linalg.solve(own, coupling)
+        self._amplitudes = -_solved(own, coupling)
 
     def strain_operator(self, point: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """``B*`` (cells, 3, 8) at a point of (-1, 1)^2 as xx, yy, gamma_xy, and |j| (cells,)."""
@@ -87,9 +87,23 @@ def _gradients(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Shape functions' gradients (cells, 4, 2), determinant (cells,), d(xi, eta)/d(x, y) (cells, 2, 2)."""
     natural = CORNERS * (1.0 + CORNERS[:, ::-1] * point[::-1]) / 4.0
-    jacobian = corners.transpose(0, 2, 1) @ natural
-    inverse = np.linalg.inv(jacobian)
-    return natural @ inverse, np.linalg.det(jacobian), inverse
+    (a, b), (c, d) = (corners.transpose(0, 2, 1) @ natural).transpose(1, 2, 0)
+    determinant = a * d - b * c
+    inverse = (np.array([[d, -b], [-c, a]]) / determinant).transpose(2, 0, 1)
+    return natural @ inverse, determinant, inverse
+
+
+def _solved(matrices: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """``matrices^-1 right`` for positive definite matrices (cells, 4, 4), which need no pivots, all cells at once.
+
+    LAPACK is called cell by cell, and with threads of its own that takes 6 to 75 times as long.
+    """
+    system = np.concatenate([matrices, right], axis=2)
+    for k in range(matrices.shape[1]):
+        row = system[:, k] / system[:, k, k, None]
+        system -= system[:, :, k, None] * row[:, None, :]
+        system[:, k] = row
+    return system[:, :, matrices.shape[1] :]
 
 
 def _component_change(to_natural: NDArray[np.float64]) -> NDArray[np.float64]:
