@@ -21,8 +21,8 @@ class PlaneStrain:
     Parameters
     ----------
     youngs_modulus : E [Pa], > 0
-    poissons_ratio : nu [-], -1 < nu < 0.5; near 0.5 (tested to 0.4999) standard elements of order 1
-        lock, enhanced quadrilaterals do not
+    poissons_ratio : nu [-], -1 < nu < 0.5; near 0.5 (tested to 0.4999) enhanced quadrilaterals give
+        displacement and stress, standard elements lock and give no stress to rely on
     density : rho [kg/m^3], > 0
 
     Source: G 2.2, with the plane strain matrix in place of G 2.137.

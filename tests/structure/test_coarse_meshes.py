@@ -192,23 +192,29 @@ def test_cooks_panel(poisson: float) -> None:
     assert abs(found[1] - 1) < 1.3 * abs(cooks_tip(4, "standard", poisson, order=2) / exact - 1)
 
 
+INNER, OUTER = 0.02, 0.05
+
+
+def pressed_cylinder(refinement: int) -> tuple[meshes.StructureMesh, np.ndarray]:
+    """A thick cylinder, and the nodal forces (n_b, 2) of a pressure 1 on the facets of its outer face."""
+    mesh = meshes.tube(outer_radius=OUTER, inner_radius=INNER, around=24 * refinement, layers=4 * refinement)
+    along = np.roll(mesh.outer_polyline.points, -1, axis=0) - mesh.outer_polyline.points
+    push = np.column_stack([-along[:, 1], along[:, 0]])  # into the body: the loop is counter-clockwise
+    return mesh, (push + np.roll(push, 1, axis=0)) / 2
+
+
 def lames_error(refinement: int, element: str, poisson: float) -> float:
     """Relative error of the mean displacement of a thick cylinder's faces under outer pressure 1."""
-    inner, outer = 0.02, 0.05
-    mesh = meshes.tube(outer_radius=outer, inner_radius=inner, around=24 * refinement, layers=4 * refinement)
-    loop, nodes = mesh.outer_polyline.points, mesh.outer_nodes
-    along = np.roll(loop, -1, axis=0) - loop
-    push = np.column_stack([-along[:, 1], along[:, 0]])  # into the body: the loop is counter-clockwise
+    mesh, push = pressed_cylinder(refinement)
     force = np.zeros_like(mesh.points)
-    force[nodes] = (push + np.roll(push, 1, axis=0)) / 2
+    force[mesh.outer_nodes] = push
     u = HeldBody(mesh, material(poisson), element).unheld_displacement(force)
-    x, y = mesh.points.T
-    r = np.hypot(x, y)
+    r = np.hypot(*mesh.points.T)
     u -= u.mean(axis=0)
     radial = (u * mesh.points).sum(axis=1) / r
-    scale = (1 + poisson) / YOUNG * outer**2 / (outer**2 - inner**2)
-    exact = -scale * ((1 - 2 * poisson) * r + inner**2 / r)
-    return max(abs(radial[np.isclose(r, face)].mean() / exact[np.isclose(r, face)][0] - 1) for face in (inner, outer))
+    scale = (1 + poisson) / YOUNG * OUTER**2 / (OUTER**2 - INNER**2)
+    exact = -scale * ((1 - 2 * poisson) * r + INNER**2 / r)
+    return max(abs(radial[np.isclose(r, face)].mean() / exact[np.isclose(r, face)][0] - 1) for face in (INNER, OUTER))
 
 
 def test_thick_cylinder_near_incompressibility() -> None:
@@ -216,6 +222,29 @@ def test_thick_cylinder_near_incompressibility() -> None:
     assert np.log2(errors[-2] / errors[-1]) == pytest.approx(2.0, abs=0.1)
     assert errors[0] < 0.03  # chords of 15 degrees: (pi/24)^2 = 1.7 %
     assert lames_error(1, "standard", 0.4999) > 0.5
+
+
+def test_pressure_near_incompressibility() -> None:
+    """Stress at the nodes, lambda 5000 times mu: the standard cell is 3 to 70 times off."""
+    inside, faces = [], []
+    for refinement in (1, 2, 4):
+        mesh, push = pressed_cylinder(refinement)
+        loads = [PointLoad(point=tuple(p), force=tuple(f)) for p, f in zip(mesh.outer_polyline.points, push)]
+        body = ElasticStructure(mesh, material=material(0.4999), time_step=1.0, loads=loads, element="enhanced")
+        body.set_initial(displacement=body.static_displacement())
+        data, r = body.fields().point_data, np.hypot(*mesh.points.T)
+        # Lame: sigma_rr + sigma_tt = 2 A everywhere, A = -p b^2/(b^2 - a^2).
+        total = 2 * OUTER**2 / (OUTER**2 - INNER**2)
+        off = np.abs(data["sigma_xx"] + data["sigma_yy"] + total) / total
+        inner = (r > 1.01 * INNER) & (r < 0.99 * OUTER)
+        inside.append(off[inner].max())
+        faces.append(off[~inner].max())
+    # A cell's stress is of order 1; averaged from all sides, inside, of order 2, less next to the faces.
+    assert (np.array(faces[:-1]) / faces[1:] > 1.5).all() and faces[0] < 0.3
+    assert (np.array(inside[:-1]) / inside[1:] > 2.0).all() and inside[0] < 0.05
+    # von Mises at the inner face, 2 A sqrt(1 - nu + nu^2), from Gauss points a fifth of a layer, 2 % of the
+    # radius, away: 4 % less.
+    assert body.peaks().von_mises == pytest.approx(total * (1 - 0.4999 + 0.4999**2) ** 0.5, rel=0.05)
 
 
 @pytest.mark.parametrize("poisson", [0.3, 0.4999])
