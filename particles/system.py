@@ -139,7 +139,7 @@ class ParticleSystem:
             return
         self._rebuild()
         arrays, laws = self._arrays(), self.contact.numbers()
-        stepping.forces(arrays, self.list.pairs, self.list.walls, *laws, None, None, 0.0)
+        stepping.forces(arrays, self.list.pairs, self.list.walls, *laws, None, self.ledger, 0.0)
         half, lead = 0.5 * self.time_step, self._lead()
         for block in range(len(self.blocks) - 2):
             kick(block, arrays, *self.gravity, self.contact.spins, self._damping(), lead, self.ledger, half)

@@ -59,8 +59,8 @@ class CoulombFriction:
 class MindlinFriction:
     """Coulomb friction whose spring is in proportion to the slope of the normal one.
 
-    ``k_t = ratio dF_n/d delta``; trial ``f = f_old + k_t v_t dt``, where a contact that is being
-    unloaded has let go of `f_old` in proportion to its stiffness. Limit and dashpot as for
+    ``k_t = ratio dF_n/d delta``; trial ``f = f_old + k_t v_t dt`` with the mean stiffness of the
+    step, or, while the contact is being unloaded, ``f = (f_old/k_t_old + v_t dt) k_t``. Limit and dashpot as for
     `CoulombFriction`, with ``c_t = 2 zeta sqrt(m_eff k_t)`` for every pair.
 
     Parameters

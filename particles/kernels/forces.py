@@ -70,8 +70,9 @@ def pair_forces(b, grains, pairs, laws, lead, ledger, dt):
             arm_i, arm_j = radius[i] - 0.5 * delta, radius[j] - 0.5 * delta
             v_t = uy * nx - ux * ny - (arm_i * omega[i] + arm_j * omega[j])
             omega_r = omega[i] - omega[j]
+        before = reach - math.sqrt((dx - dt * ux) * (dx - dt * ux) + (dy - dt * uy) * (dy - dt * uy))
         meeting = Meeting(
-            delta, ux * nx + uy * ny, v_t, omega_r, radius[i] * radius[j] / reach,
+            delta, before, ux * nx + uy * ny, v_t, omega_r, radius[i] * radius[j] / reach,
             inverse_mass[i] + inverse_mass[j], compliance[i] + compliance[j],
         )  # fmt: skip
         now = Now(meeting.v_n, meeting.v_t, meeting.omega_r)
@@ -142,7 +143,8 @@ def wall_forces(b, grains, walls, laws, lead, ledger, dt):
         if spins:
             arm, omega_r = ri - 0.5 * delta, omega[i]
             v_t = uy * nx - ux * ny - arm * omega[i]
-        meeting = Meeting(delta, ux * nx + uy * ny, v_t, omega_r, ri, inverse_mass[i], compliance[i])
+        v_n = ux * nx + uy * ny
+        meeting = Meeting(delta, delta + v_n * dt, v_n, v_t, omega_r, ri, inverse_mass[i], compliance[i])
         now = Now(meeting.v_n, meeting.v_t, meeting.omega_r)
         if lead is not None:
             now = now_at_wall(lead, i, nx, ny, arm, meeting)

@@ -60,10 +60,6 @@ def test_balance_of_a_rolling_and_sliding_disc_is_exact(mu: float, eta_r: float)
     assert worst < 4.0 * steps * EPS * system.energies()["kinetic"]
 
 
-HALF_STEP_MISSING = pytest.mark.xfail(strict=True, reason="start() keeps no dashpot forces for the first trapezoid")
-
-
-@HALF_STEP_MISSING
 def test_balance_counts_dashpots_from_the_first_moment() -> None:
     """Discs that are given in contact and in motion: the first step balances like all others."""
     radius = 0.01
@@ -95,10 +91,11 @@ def shaken_packing(dt: float, duration: float) -> tuple[float, float]:
 
 def test_balance_is_kept_and_converges_with_the_time_step() -> None:
     drifts, turnover = zip(*(shaken_packing(dt, 4e-3) for dt in (4e-6, 2e-6, 1e-6, 0.5e-6)), strict=True)
-    assert drifts[0] < 1e-3 * turnover[0]
+    assert drifts[0] < 2e-4 * turnover[0]
     # Works and losses are the integrator's own to round-off while a contact lasts; what remains is
-    # the step in which it is born or opens, where forces of the dashpots jump: order 1.
-    assert np.log2(drifts[0] / drifts[-1]) / 3.0 == pytest.approx(1.0, abs=0.3)
+    # the turn of the normals, of order 2, and the step in which it is born or opens, where forces of the
+    # dashpots jump: order 1, alone in the end (1.6, 1.3, 1.2, 1.15 over four halvings).
+    assert np.log2(drifts[1] / drifts[-1]) / 2.0 == pytest.approx(1.0, abs=0.3)
 
 
 def elastic_error(dt: float, seed: int) -> np.ndarray:

@@ -126,14 +126,7 @@ def test_turned_shifted_and_moving_pairs_feel_the_same(
         assert np.abs(after.torque - before.torque).max() <= tolerance * (1.0 + pair.mu + pair.mu_r) * size
 
 
-MINDLIN_LETS_GO = pytest.mark.xfail(
-    strict=True, reason="v_n dt misjudges the overlap of the step before by (u_t dt)^2/2d: Mindlin's spring is let go"
-)
-
-
-@pytest.mark.parametrize(
-    "kind", [pytest.param(kind, marks=MINDLIN_LETS_GO) if kind == "Mindlin" else kind for kind in SPRUNG]
-)
+@pytest.mark.parametrize("kind", SPRUNG)
 @FEW
 @given(pair=any_pair(overlap=decades(-4.0, -1.5), mu=st.just(1e12), mu_r=st.just(1e12)), steps=st.integers(200, 400))
 def test_pair_that_turns_as_one_body_keeps_its_springs(kind: str, pair: Pair, steps: int) -> None:
@@ -280,6 +273,11 @@ def test_a_contact_never_gives_more_than_it_took(kind: str, pair: Pair, spins: n
     assert abs(work - losses.sum()) <= 4e-5 * turnover + 0.5 * jerk
 
 
+def without_underflow(speeds: list[float]) -> np.ndarray:
+    """Zero in place of numbers whose products with a unit would lose digits."""
+    return np.array([speed if abs(speed) > 1e-100 else 0.0 for speed in speeds])
+
+
 def unfolded(pair: Pair, length: float, mass: float, time: float) -> Pair:
     """The same pair measured in other units."""
     return replace(
@@ -321,7 +319,7 @@ def collide(kind: str, pair: Pair, speeds: np.ndarray, units: tuple[float, float
     pair=any_pair(
         overlap=decades(-3.0, -1.5), zeta=or_none(decades(-3.0, -0.3)), shear_zeta=or_none(decades(-3.0, -0.3))
     ),
-    speeds=st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6).map(np.array),
+    speeds=st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6).map(without_underflow),
     powers=st.tuples(st.integers(-12, 12), st.integers(-20, 20), st.integers(-20, 20)),
 )
 def test_units_do_not_matter(kind: str, pair: Pair, speeds: np.ndarray, powers: tuple[int, int, int]) -> None:

@@ -73,7 +73,7 @@ CASES = {
     "sliding and sticking": ("elastic rolling", {"mu": 0.3}, 2.0),
     "rolling spring": ("elastic rolling", {"mu": 0.3, "mu_r": 0.2, "roll": 3.0}, 2.0),
     "Mindlin, sliding": ("Mindlin", {"mu": 0.02}, 2.0),
-    "Mindlin, sticking": ("Mindlin", {"mu": 0.3}, 1.0),
+    "Mindlin, sticking": ("Mindlin", {"mu": 0.3}, 2.0),
     "constant torque": ("constant torque", {"mu": 0.3, "mu_r": 0.02}, 2.0),
     "stuck to the end": ("elastic rolling", {"mu": 1e3, "shear": 0.1}, 1.0),
     "normal dashpot": ("normal only", {"zeta": 0.2}, 1.0),

@@ -20,6 +20,7 @@ class Meeting(NamedTuple):
     """Kinematics of one contact of i with j (model 1.1), its radius and inertias."""
 
     delta: float
+    delta_before: float  # at the step before
     v_n: float
     v_t: float
     omega_r: float
@@ -60,9 +61,9 @@ def time_in_contact(delta, v_n, dt):
 
 
 @inner_kernel
-def shear_stiffnesses(laws, meeting, dt):
+def shear_stiffnesses(laws, meeting):
     """k_t and k_r now, and k_t at the step before."""
-    now, before = max(meeting.delta, 0.0), max(meeting.delta + meeting.v_n * dt, 0.0)
+    now, before = max(meeting.delta, 0.0), max(meeting.delta_before, 0.0)
     k_t = tangential_stiffness(laws.tangential, normal_stiffness(laws.normal, now, meeting.r_eff))
     k_before = tangential_stiffness(laws.tangential, normal_stiffness(laws.normal, before, meeting.r_eff))
     return k_t, rolling_stiffness(laws.rolling, k_t, meeting.r_eff), k_before
@@ -72,7 +73,7 @@ def shear_stiffnesses(laws, meeting, dt):
 def respond(laws, meeting, now, f_old, m_old, dt):
     """A touching pair."""
     f_n, dash_n = normal_force(laws.normal, meeting, now.v_n)
-    k_t, k_r, k_before = shear_stiffnesses(laws, meeting, dt)
+    k_t, k_r, k_before = shear_stiffnesses(laws, meeting)
     held = time_in_contact(meeting.delta, meeting.v_n, dt)
     trial_t = tangential_trial(laws.tangential, f_old, meeting.v_t * held, k_t, k_before)
     trial_r = rolling_trial(laws.rolling, m_old, meeting.omega_r * held, k_r)
@@ -84,7 +85,7 @@ def respond(laws, meeting, now, f_old, m_old, dt):
 @inner_kernel
 def let_go(laws, meeting, f_old, m_old, dt):
     """A contact that opened in this step: no force, all that its springs held is cut."""
-    k_t, k_r, k_before = shear_stiffnesses(laws, meeting, dt)
+    k_t, k_r, k_before = shear_stiffnesses(laws, meeting)
     cut_t = tangential_trial(laws.tangential, f_old, meeting.v_t * dt, k_t, k_before)
     cut_r = rolling_trial(laws.rolling, m_old, meeting.omega_r * dt, k_r)
     return Response(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, cut_t, cut_r)
@@ -93,7 +94,7 @@ def let_go(laws, meeting, f_old, m_old, dt):
 @inner_kernel
 def slip_energies(laws, meeting, f_old, m_old, response, dt):
     """Twice the energies that the tangential and the rolling spring lost by slip in this step."""
-    k_t, k_r, k_before = shear_stiffnesses(laws, meeting, dt)
+    k_t, k_r, k_before = shear_stiffnesses(laws, meeting)
     path = meeting.v_t * dt
     return (
         slip_energy(laws.tangential, f_old, response.spring, response.cut_t, path, k_t, k_before),

@@ -137,7 +137,7 @@ def _(law, k_t, inverse_mass):
 def _(law, f_old, path, k_t, k_before):
     if k_t < k_before:  # unloaded, it lets go in proportion: it would give back more than it took
         return f_old * k_t / k_before + k_t * path
-    return f_old + k_t * path
+    return f_old + 0.5 * (k_before + k_t) * path
 
 
 @inner_kernel
