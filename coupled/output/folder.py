@@ -10,7 +10,7 @@ from typing import Any
 
 from coupled.errors import LeitoError
 from coupled.output import checkpoint
-from coupled.scene import Scene, dump_scene
+from coupled.scene import Scene, SceneError, dump_scene, load_scene
 
 SCENE = "scene.toml"
 SUMMARY = "summary.json"
@@ -76,10 +76,11 @@ def _clear(path: Path) -> None:
 
 
 def _require_same_scene(path: Path, scene: Scene) -> None:
+    """Compare with the scene of the folder, both with the defaults of this version."""
     try:
-        old = _flat(tomllib.loads((path / SCENE).read_text()))
-    except (OSError, tomllib.TOMLDecodeError):
-        raise LeitoError(f"{path} holds no readable {SCENE}; start anew with --overwrite") from None
+        old = _flat(tomllib.loads(dump_scene(load_scene(path / SCENE))))
+    except SceneError as error:
+        raise LeitoError(f"{path} holds no {SCENE} of this version ({error}); start anew with --overwrite") from None
     new = _flat(tomllib.loads(dump_scene(scene)))
     for key in sorted(old.keys() | new.keys()):
         if old.get(key) != new.get(key) and not key.startswith(FREE_TO_CHANGE):

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shutil
 import tomllib
 from pathlib import Path
 
@@ -153,6 +154,19 @@ def test_a_run_is_resumed_with_its_own_scene_only(tube: Path) -> None:
     other = load_scene(tube / "scene.toml", ["contact.friction=0.3"])
     with pytest.raises(LeitoError, match=r"contact.friction = 0.3 differs from 0.8"):
         run_scene(other, out=tube, resume=True, progress=False)
+
+
+def test_a_run_of_a_version_with_fewer_keys_is_known_again(tube: Path, tmp_path: Path) -> None:
+    """Keys that this version has added stand at their defaults."""
+    old = shutil.copytree(tube, tmp_path / "old")
+    lines = (old / "scene.toml").read_text().splitlines()
+    kept = [line for line in lines if line != 'normal = "linear"']
+    assert len(kept) < len(lines)
+    (old / "scene.toml").write_text("\n".join(kept))
+    run_scene(load_scene(tube / "scene.toml"), out=old, resume=True, progress=False)
+    with pytest.raises(LeitoError, match="holds no scene.toml of this version .*--overwrite"):
+        (old / "scene.toml").write_text("\n".join([*kept, "[unheard]", "of = 1"]))
+        run_scene(load_scene(tube / "scene.toml"), out=old, resume=True, progress=False)
 
 
 def test_bed_is_settled_once_and_shared(tube: Path) -> None:
