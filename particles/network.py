@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 
 from particles.kernels.slopes import Touching, slopes
+from particles.periodic import nearest_image
 from particles.state import Floats
 from particles.system import ParticleSystem
 
@@ -108,7 +109,9 @@ def stiffness_network(system: ParticleSystem) -> StiffnessNetwork:
 def _pairs(system: ParticleSystem) -> _Contacts:
     g, listed = system.grains, system.list.pairs
     i, j = listed.owner.astype(np.int64), listed.partner.astype(np.int64)
-    apart = np.column_stack([_nearest(g.x[j] - g.x[i], system.period[0]), _nearest(g.y[j] - g.y[i], system.period[1])])
+    apart = np.column_stack(
+        [nearest_image(g.x[j] - g.x[i], system.period[0]), nearest_image(g.y[j] - g.y[i], system.period[1])]
+    )
     distance, reach = np.hypot(*apart.T), g.radius[i] + g.radius[j]
     touch = (distance < reach) & (i < g.n_free)
     i, j, distance, reach = i[touch], j[touch], distance[touch], reach[touch]
@@ -137,11 +140,6 @@ def _walls(system: ParticleSystem) -> _Contacts:
     normal = -np.column_stack([walls.nx[w], walls.ny[w]])
     arm = g.radius[i] - 0.5 * delta
     return _Contacts(i, np.full(len(i), len(g)), normal, arm, np.zeros(len(i)), asked)
-
-
-def _nearest(distance: Floats, period: float | None) -> Floats:
-    """Distance to the nearest image [m]."""
-    return distance if period is None else distance - period * np.floor(distance / period + 0.5)
 
 
 def _stretch(i: Places, j: Places, normal: Floats, arm_i: Floats, arm_j: Floats, n: int, spins: bool) -> csr_matrix:

@@ -39,6 +39,11 @@ def folded(coordinate: Floats, period: float | None) -> Floats:
     return coordinate if period is None else coordinate - period * np.floor(coordinate / period)
 
 
+def nearest_image(distance: Floats, period: float | None) -> Floats:
+    """Distances [m] to the nearest image, between minus and plus half a period; as they are without one."""
+    return distance if period is None else folded(distance + 0.5 * period, period) - 0.5 * period
+
+
 def with_images(x: Floats, y: Floats, radius: Floats, skin: float, period: Period) -> tuple[Floats, Floats, np.ndarray]:
     """Folded positions (n + k,), and behind them the images that others may reach across a seam.
 
