@@ -80,8 +80,8 @@ def rarely(value: float) -> float:
 def by_law(stub: Function) -> Function:
     """A function of laws that kernels call by the type of its first argument, like `functools.singledispatch`.
 
-    `stub` gives name, arguments and meaning; ``@stub.of(Law, ...)`` marks what is done for a law, or for
-    None. The choice is made when a kernel is compiled, and inlined: a law that is not modelled costs nothing.
+    `stub` gives name, arguments and meaning; ``@stub.of(Law, ...)`` marks what is done for a law, for a
+    float, or for None. The choice is made when a kernel is compiled, and inlined: a law that is not modelled costs nothing.
     """
     choices: dict[type, Callable[..., Any]] = {}
 
