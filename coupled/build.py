@@ -17,7 +17,7 @@ import structure as fem
 from coupled.errors import LeitoError
 from coupled.glued import GluedGrains
 from coupled.laws import contact_law, interface_spring
-from coupled.model import Model, Structure
+from coupled.model import Model
 from coupled.scene import Beam, BodyLoad, BoundaryLoad, PointLoad, RowUnder, Scene, SettledGrains
 from coupled.scene.materials import GRAINS, STRUCTURE, materials
 from coupled.step import damping_of, with_step
@@ -152,7 +152,7 @@ def _glued(scene: Scene, mesh: meshes.StructureMesh) -> GluedGrains:
     )
 
 
-def _structure(scene: Scene, mesh: meshes.StructureMesh) -> Structure:
+def _structure(scene: Scene, mesh: meshes.StructureMesh) -> fem.Structure:
     table = scene.structure
     step = scene.time.step * (1 if scene.interface is None else scene.interface.substeps)
     if table.kind == "rigid":

@@ -4,43 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
-from mpi4py import MPI
 from numpy.typing import NDArray
 
 from coupled.glued import GluedGrains
-from meshes import BoundaryPolyline
 from particles import ParticleSystem
-from structure import StructureEnergies, StructureFields, StructurePeaks
+from structure import Structure
 
 Floats = NDArray[np.float64]
-
-
-class Structure(Protocol):
-    """What the coupling asks of a structure, elastic or rigid."""
-
-    comm: MPI.Intracomm
-    polyline: BoundaryPolyline
-    mass: float
-    boundary_displacement: Floats
-    time_step: float
-
-    @property
-    def time(self) -> float: ...
-    def advance(self, boundary_force: Floats) -> None: ...
-    def begin_under(self, boundary_force: Floats) -> None: ...
-    def acceleration_by(self, boundary_force: Floats) -> Floats: ...
-    def predict(self, interval: float, order: int = 2) -> Floats: ...
-    def energies(self) -> StructureEnergies: ...
-    def centroid(self) -> Floats: ...
-    def mean_rotation(self) -> float: ...
-    def external_force(self) -> Floats: ...
-    def peaks(self) -> StructurePeaks: ...
-    def fields(self) -> StructureFields: ...
-    def state(self) -> dict[str, Floats]: ...
-    def restore(self, state: dict[str, Floats]) -> None: ...
 
 
 class Model:

@@ -7,6 +7,7 @@ from structure.loads import BodyForce, BoundaryLoad, PointLoad
 from structure.material import PlaneStrain, Rayleigh
 from structure.newmark import Newmark
 from structure.prescribed import PrescribedRigid
+from structure.protocol import Structure
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "PointLoad",
     "PrescribedRigid",
     "Rayleigh",
+    "Structure",
     "StructureEnergies",
     "StructureError",
     "StructureFields",

@@ -1,4 +1,4 @@
-"""The elastic structure: a free plane-strain body, stepped by Newmark."""
+"""The elastic structure: a free plane-strain body, its strain by the theory that is asked for."""
 
 from __future__ import annotations
 
@@ -12,16 +12,15 @@ from meshes import StructureMesh
 from structure import checks, modes
 from structure.boundary import agreed_force, boundary_exchange
 from structure.discrete import DiscreteBody
-from structure.elements import ElementName, element_of
+from structure.elements import ElementName
 from structure.errors import StructureError
+from structure.linear import LinearTheory
 from structure.load_vectors import LoadVectors
 from structure.loads import Load
 from structure.material import PlaneStrain, Rayleigh
-from structure.newmark import Newmark, NewmarkStepper
+from structure.newmark import Newmark
 from structure.results import StructureEnergies, StructureFields, StructurePeaks, cell_kind
 from structure.solver import factorise
-from structure.statics import balanced_displacement
-from structure.stress import StressProbe
 
 STATE_FIELDS = ("displacement", "velocity", "acceleration")
 
@@ -72,18 +71,12 @@ class ElasticStructure:
         self.material, self.damping, self.time_step = material, damping, float(time_step)
         self._body = DiscreteBody(mesh, material.density)
         self.mass = self._body.mass
-        self._element = element_of(element, self._body, material)
-        self._stiffness = self._element.stiffness_matrix()
-        self._stepper = NewmarkStepper(
-            mass=self._body.mass_matrix,
-            stiffness=self._stiffness,
-            damping=_damping_matrix(self._body.mass_matrix, self._stiffness, damping),
-            scheme=scheme,
-            time_step=self.time_step,
+        self._theory = LinearTheory(
+            self._body, material, element=element, damping=damping, scheme=scheme, time_step=self.time_step
         )
+        self._stepper = self._theory.stepper
         self._exchange = boundary_exchange(self._body.nodes, mesh.outer_nodes, self.comm)
         self._loads = LoadVectors(self._body, loads)
-        self._probe: StressProbe | None = None
         self._mass_solve: Callable[[PETSc.Vec, PETSc.Vec], None] | None = None
         self._ledger = ledger
         self.set_initial()
@@ -192,7 +185,7 @@ class ElasticStructure:
 
     def mean_rotation(self) -> float:
         """Rotation [rad] of the best-fitting rigid motion, counter-clockwise positive."""
-        return self._body.mean_rotation(self._stepper.displacement)
+        return self._theory.rotation()
 
     def momentum(self) -> NDArray[np.float64]:
         """Linear momentum (2,) [kg/s]."""
@@ -204,7 +197,7 @@ class ElasticStructure:
 
     def peaks(self) -> StructurePeaks:
         """Largest von Mises stress and principal strain over the Gauss points of all cells."""
-        return self._stress_probe().peaks(self._stepper.displacement)
+        return self._theory.peaks()
 
     def fields(self) -> StructureFields:
         """Nodal fields in original order, on every rank."""
@@ -217,12 +210,12 @@ class ElasticStructure:
             points=self.mesh.points,
             cells=self.mesh.cells,
             cell_kind=cell_kind(self.mesh.cell, self.mesh.order),
-            point_data=motion | self._stress_probe().nodal(stepper.displacement),
+            point_data=motion | self._theory.nodal_stress(),
         )
 
     def frequencies(self, count: int) -> NDArray[np.float64]:
         """The lowest `count` elastic frequencies [Hz] of the free body, ascending."""
-        return modes.elastic_modes(self._body, self._stiffness, self.material, count)[0]
+        return modes.elastic_modes(self._body, self._theory.stiffness, self.material, count)[0]
 
     def release_from_mode(self, number: int, amplitude: float) -> None:
         """Start anew from elastic mode `number` (1 is the lowest) at rest, loads kept.
@@ -231,7 +224,7 @@ class ElasticStructure:
         component, made positive.
         """
         checks.positive("amplitude", abs(amplitude), "m, sign free")
-        shape = modes.elastic_modes(self._body, self._stiffness, self.material, number)[1][-1]
+        shape = modes.elastic_modes(self._body, self._theory.stiffness, self.material, number)[1][-1]
         self.set_initial(displacement=amplitude * shape)
 
     def static_displacement(self) -> NDArray[np.float64]:
@@ -239,7 +232,7 @@ class ElasticStructure:
 
         The loads must be in balance, as nothing else holds the body.
         """
-        return balanced_displacement(self._body, self._stiffness, self.material, self._loads)
+        return self._theory.static_displacement(self._loads)
 
     def state(self) -> dict[str, NDArray[np.float64]]:
         """All that is needed to go on with the same bits, in original node order, on every rank."""
@@ -247,6 +240,7 @@ class ElasticStructure:
         sums = [self._loss, self._external_work, self._boundary_work]
         return {
             **{name: self._body.nodes.gather(array) for name, array in arrays.items()},
+            **self._theory.memory(),
             "boundary_force": self._force.copy(),
             "sums": np.array(sums),
             "steps": np.array(self._steps),
@@ -258,6 +252,7 @@ class ElasticStructure:
         for name in STATE_FIELDS:
             given = self._nodal(name, state[name])
             getattr(self._stepper, name)[:] = self._body.nodes.share(given)
+        self._theory.recall(state)
         self._force = agreed_force(state["boundary_force"], self.polyline.points.shape, self.comm)
         self._loss, self._external_work, self._boundary_work = map(float, state["sums"])
         self._steps = int(state["steps"])
@@ -287,19 +282,3 @@ class ElasticStructure:
                 f"{self.mesh.points.shape}; got shape {values.shape}"
             )
         return values
-
-    def _stress_probe(self) -> StressProbe:
-        if self._probe is None:
-            self._probe = StressProbe(self._body, self.material, self._element)
-        return self._probe
-
-
-def _damping_matrix(mass: PETSc.Mat, stiffness: PETSc.Mat, damping: Rayleigh | None) -> PETSc.Mat | None:
-    """``c_a M + c_b K``, or None without damping."""
-    if damping is None or damping.mass_factor == damping.stiffness_factor == 0.0:
-        return None
-    matrix = stiffness.copy()
-    matrix.scale(damping.stiffness_factor)
-    same = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
-    matrix.axpy(damping.mass_factor, mass, structure=same)
-    return matrix

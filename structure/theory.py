@@ -1,0 +1,91 @@
+"""What a theory of deformation is to the rest: a step in time, and the place where strain is read."""
+
+from __future__ import annotations
+
+from typing import Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from structure.load_vectors import LoadVectors
+from structure.results import StructurePeaks
+
+TheoryName = Literal["linear", "corotational", "large_strain"]
+Floats = NDArray[np.float64]
+
+
+class Stepper(Protocol):
+    """State and step of a body on this rank's share of the unknowns.
+
+    The arrays `displacement` [m], `velocity` [m/s], `acceleration` [m/s^2], `force` [N/m] and
+    `increment` [m] (of the last step) have shape (owned unknowns,): write into them, never replace
+    them. `carried` (2,) [m] is a translation near that of the body, free to be taken off before
+    products whose round-off would otherwise grow with the path.
+    """
+
+    displacement: Floats
+    velocity: Floats
+    acceleration: Floats
+    force: Floats
+    increment: Floats
+    carried: Floats
+
+    def start(self) -> None:
+        """Take up displacement, velocity and force; the acceleration follows from equilibrium."""
+        ...
+
+    def step(self) -> None:
+        """One step to the time at which `force` acts."""
+        ...
+
+    def loss_of_step(self) -> float:
+        """This rank's share of the damping loss [J/m] of the last step."""
+        ...
+
+    def kinetic(self) -> float:
+        """This rank's share of the kinetic energy [J/m]."""
+        ...
+
+    def strain(self) -> float:
+        """This rank's share of the strain energy [J/m]."""
+        ...
+
+
+class Theory(Protocol):
+    """How a body's strain follows from its displacement.
+
+    Attributes
+    ----------
+    stepper
+        Its state and its step.
+    stiffness : PETSc.Mat
+        Stiffness [Pa] of small motion about the reference shape.
+    """
+
+    stepper: Stepper
+    stiffness: PETSc.Mat
+
+    def rotation(self) -> float:
+        """Rotation [rad] of the best-fitting rigid motion."""
+        ...
+
+    def nodal_stress(self) -> dict[str, Floats]:
+        """Stress [Pa] and strain by name, (n,) in original order, in the axes of space."""
+        ...
+
+    def peaks(self) -> StructurePeaks:
+        """Largest stress and strain over the Gauss points of all cells."""
+        ...
+
+    def static_displacement(self, loads: LoadVectors) -> Floats:
+        """Displacement (n, 2) [m] at rest under the full loads."""
+        ...
+
+    def memory(self) -> dict[str, Floats]:
+        """What the state needs beyond displacement, velocity and acceleration."""
+        ...
+
+    def recall(self, state: dict[str, Floats]) -> None:
+        """Take up the `memory` in a state, after the arrays of the stepper."""
+        ...
