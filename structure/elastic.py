@@ -39,9 +39,9 @@ class ElasticStructure:
         What it is made of, Rayleigh damping or None, Newmark's parameters, external loads.
     time_step : float
         Length [s] of every step.
-    element : {"standard", "enhanced"}
+    element : {"standard", "enhanced"}, optional
         Displacements alone, or, for quadrilaterals of order 1, strains enhanced so that a coarse mesh
-        bends as it should, also near nu = 0.5.
+        bends as it should, also near nu = 0.5. Absent: enhanced where the cells allow it.
     ledger : bool
         Keep the sums of work and loss that `energies` reports.
 
@@ -63,7 +63,7 @@ class ElasticStructure:
         damping: Rayleigh | None = None,
         scheme: Newmark = Newmark(),
         loads: Sequence[Load] = (),
-        element: ElementName = "standard",
+        element: ElementName | None = None,
         ledger: bool = True,
     ) -> None:
         checks.positive("time_step", time_step, "s")

@@ -18,6 +18,7 @@ from structure.material import PlaneStrain
 
 ElementName = Literal["standard", "enhanced"]
 Strain = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+ENHANCEABLE = ("quadrilateral", 1)  # cell and order
 BLOCK = 8192  # cells whose matrices are in memory at a time
 
 
@@ -73,7 +74,7 @@ class EnhancedElement:
 
     def __init__(self, body: DiscreteBody, material: PlaneStrain) -> None:
         mesh = body.mesh
-        if (mesh.cell, mesh.order) != ("quadrilateral", 1):
+        if (mesh.cell, mesh.order) != ENHANCEABLE:
             raise StructureError(
                 f"element = 'enhanced' is for quadrilaterals of order 1, not for a {mesh.cell} of order "
                 f"{mesh.order}: use element = 'standard'"
@@ -120,14 +121,16 @@ ELEMENTS: dict[ElementName, type[StandardElement] | type[EnhancedElement]] = {
 }
 
 
-def element_of(name: ElementName, body: DiscreteBody, material: PlaneStrain) -> Element:
-    """The formulation of this name on a body.
+def element_of(name: ElementName | None, body: DiscreteBody, material: PlaneStrain) -> Element:
+    """The formulation of this name on a body; without a name enhanced where the cells allow it, else standard.
 
     Raises
     ------
     StructureError
         The name is not known, or the formulation is not for these cells.
     """
+    if name is None:
+        name = "enhanced" if (body.mesh.cell, body.mesh.order) == ENHANCEABLE else "standard"
     if name not in ELEMENTS:
         raise StructureError(f"element = {name!r} is not known: use one of {', '.join(ELEMENTS)}")
     return ELEMENTS[name](body, material)

@@ -28,7 +28,7 @@ class LinearTheory:
         body: DiscreteBody,
         material: PlaneStrain,
         *,
-        element: ElementName,
+        element: ElementName | None,
         damping: Rayleigh | None,
         scheme: Newmark,
         time_step: float,

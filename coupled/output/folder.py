@@ -78,7 +78,7 @@ def _clear(path: Path) -> None:
 def _require_same_scene(path: Path, scene: Scene) -> None:
     """Compare with the scene of the folder, both with the defaults of this version."""
     try:
-        old = _flat(tomllib.loads(dump_scene(load_scene(path / SCENE))))
+        old = _flat(tomllib.loads(dump_scene(_scene_of_run(path / SCENE))))
     except SceneError as error:
         raise LeitoError(f"{path} holds no {SCENE} of this version ({error}); start anew with --overwrite") from None
     new = _flat(tomllib.loads(dump_scene(scene)))
@@ -88,6 +88,15 @@ def _require_same_scene(path: Path, scene: Scene) -> None:
                 f"{key} = {new.get(key)} differs from {old.get(key)} of the run in {path}; "
                 "a run is resumed with its own scene: use another folder with --out"
             )
+
+
+def _scene_of_run(path: Path) -> Scene:
+    """The resolved scene of a run; one of a version without the key `structure.element` had standard cells."""
+    scene = load_scene(path)
+    elastic = scene.structure is not None and scene.structure.kind == "elastic"
+    if elastic and "element" not in tomllib.loads(path.read_text())["structure"]:
+        return load_scene(path, ["structure.element=standard"])
+    return scene
 
 
 def _flat(table: Any, prefix: str = "") -> dict[str, Any]:

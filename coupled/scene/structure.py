@@ -100,6 +100,17 @@ class Initial(Table):
     amplitude: Positive = Field(1e-3, description="largest displacement [m]")
 
 
+_ENHANCEABLE = ("quadrilateral", 1)  # cell and order
+
+
+def _usual_element(shape: Any) -> str:
+    """Return the element that suits the cells of a shape, which may still be as it was read."""
+    given = shape if isinstance(shape, dict) else getattr(shape, "__dict__", {})
+    defaults = {name: Tube.model_fields[name].default for name in ("cell", "order")}
+    cells = tuple(given.get(name, default) for name, default in defaults.items())
+    return "enhanced" if cells == _ENHANCEABLE else "standard"
+
+
 class Structure(Table):
     """A structure: elastic (FEM), rigid along a path, or a free rigid body."""
 
@@ -108,7 +119,9 @@ class Structure(Table):
     youngs_modulus: Positive | None = Field(None, description="Young's modulus E [Pa]")
     poissons_ratio: Annotated[Number, Field(gt=-1, lt=0.5)] | None = Field(None, description="Poisson's ratio nu [-]")
     element: Literal["standard", "enhanced"] | None = Field(
-        None, description="formulation of elastic cells; 'enhanced' lets coarse quadrilaterals bend"
+        None,
+        description="formulation of elastic cells; 'enhanced', which lets coarse meshes bend, where it is "
+        "absent and the cells are quadrilaterals of order 1, else 'standard'",
     )
     tube: Tube | None = Field(None, description="a ring")
     beam: Beam | None = Field(None, description="a rectangle")
@@ -124,7 +137,7 @@ class Structure(Table):
     def _write_numerics(cls, data: Any) -> Any:
         """Write element and scheme of an elastic structure when they are not given."""
         if isinstance(data, dict) and data.get("kind") == "elastic":
-            return {"element": "standard", "newmark": {}, **data}
+            return {"element": _usual_element(data.get("tube") or data.get("beam")), "newmark": {}, **data}
         return data
 
     @model_validator(mode="after")
@@ -139,7 +152,7 @@ class Structure(Table):
                 f'means nothing for kind = "{self.kind}"; remove it or change structure.kind',
             )
         shape = self.tube or self.beam
-        if self.element == "enhanced" and shape is not None and (shape.cell, shape.order) != ("quadrilateral", 1):
+        if self.element == "enhanced" and shape is not None and (shape.cell, shape.order) != _ENHANCEABLE:
             raise refusal(
                 "structure.element",
                 self.element,

@@ -144,7 +144,7 @@ def test_nothing_is_overwritten(tube: Path) -> None:
 
 def test_a_scene_refused_when_built_leaves_no_trace(tube: Path) -> None:
     out = tube.parent / "refused"
-    scene = load_scene(tube / "scene.toml", ["structure.tube.order=2"])
+    scene = load_scene(tube / "scene.toml", ["structure.tube.order=2", "structure.element=standard"])
     with pytest.raises(LeitoError, match="stiffness ratio r = .* above 2"):
         run_scene(scene, out=out, progress=False)
     assert not out.exists()
@@ -157,13 +157,16 @@ def test_a_run_is_resumed_with_its_own_scene_only(tube: Path) -> None:
 
 
 def test_a_run_of_a_version_with_fewer_keys_is_known_again(tube: Path, tmp_path: Path) -> None:
-    """Keys that this version has added stand at their defaults."""
+    """Keys that this version has added stand at their defaults, but for elements, which used to be standard."""
     old = shutil.copytree(tube, tmp_path / "old")
     lines = (old / "scene.toml").read_text().splitlines()
     kept = [line for line in lines if line != 'normal = "linear"']
     assert len(kept) < len(lines)
     (old / "scene.toml").write_text("\n".join(kept))
     run_scene(load_scene(tube / "scene.toml"), out=old, resume=True, progress=False)
+    (old / "scene.toml").write_text("\n".join(line for line in kept if not line.startswith("element = ")))
+    with pytest.raises(LeitoError, match="structure.element = enhanced differs from standard"):
+        run_scene(load_scene(tube / "scene.toml"), out=old, resume=True, progress=False)
     with pytest.raises(LeitoError, match="holds no scene.toml of this version .*--overwrite"):
         (old / "scene.toml").write_text("\n".join([*kept, "[unheard]", "of = 1"]))
         run_scene(load_scene(tube / "scene.toml"), out=old, resume=True, progress=False)

@@ -1,16 +1,41 @@
 """The key structure.element: written, refused where it does not fit, and handed to the structure."""
 
+from pathlib import Path
+
 import pytest
 
 from coupled.build import build
 from coupled.errors import SceneError
-from coupled.scene import load_scene
+from coupled.scene import Structure, Tube, dump_scene, load_scene
 
 
-def test_elastic_scene_says_its_element() -> None:
-    assert load_scene("elastic_tube").structure.element == "standard"
-    assert load_scene("elastic_tube", ["structure.element=enhanced"]).structure.element == "enhanced"
-    assert load_scene("rigid_tube").structure.element is None
+@pytest.mark.parametrize(
+    ("name", "overrides", "element"),
+    [
+        ("elastic_tube", [], "enhanced"),
+        ("elastic_beam", [], "enhanced"),
+        ("elastic_tube", ["structure.tube.order=2"], "standard"),
+        ("elastic_tube", ["structure.tube.cell=triangle"], "standard"),
+        ("elastic_beam", ["structure.beam.cell=triangle", "structure.beam.order=2"], "standard"),
+        ("beam_vibration", [], "standard"),  # of order 2
+        ("beam_vibration", ["structure.beam.order=1"], "enhanced"),
+        ("elastic_tube", ["structure.element=standard"], "standard"),
+        ("rigid_tube", [], None),
+    ],
+)
+def test_scene_says_the_element_it_uses(name: str, overrides: list[str], element: str | None, tmp_path: Path) -> None:
+    """Overrides included; what is written down reads back the same."""
+    scene = load_scene(name, overrides)
+    assert scene.structure.element == element
+    (tmp_path / "scene.toml").write_text(dump_scene(scene))
+    assert load_scene(tmp_path / "scene.toml") == scene
+
+
+def test_tables_made_in_python_choose_alike() -> None:
+    ring = {"outer_radius": 0.05, "inner_radius": 0.04}
+    metal = {"youngs_modulus": 70e9, "poissons_ratio": 0.35, "density": 2700.0}
+    for order, element in ((1, "enhanced"), (2, "standard")):
+        assert Structure(kind="elastic", tube=Tube(**ring, order=order), **metal).element == element
 
 
 @pytest.mark.parametrize(
