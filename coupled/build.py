@@ -17,8 +17,9 @@ import structure as fem
 from coupled.errors import LeitoError
 from coupled.glued import GluedGrains
 from coupled.laws import contact_law, interface_spring
+from coupled.loads import load_of
 from coupled.model import Model
-from coupled.scene import Beam, BodyLoad, BoundaryLoad, PointLoad, RowUnder, Scene, SettledGrains
+from coupled.scene import Beam, RowUnder, Scene, SettledGrains
 from coupled.scene.materials import GRAINS, STRUCTURE, materials
 from coupled.step import damping_of, with_step
 from particles.beds import drop_height_on, lattice
@@ -157,7 +158,7 @@ def _structure(scene: Scene, mesh: meshes.StructureMesh) -> fem.Structure:
     step = scene.time.step * (1 if scene.interface is None else scene.interface.substeps)
     if table.kind == "rigid":
         return fem.PrescribedRigid(mesh, path=np.array(table.path.points), time_step=step)
-    loads = [_load(load, mesh) for load in table.loads]
+    loads = [load_of(load, mesh) for load in table.loads]
     if table.kind == "free_rigid":
         return fem.FreeRigid(mesh, density=table.density, time_step=step, loads=loads)
     body = fem.ElasticStructure(
@@ -176,16 +177,6 @@ def _structure(scene: Scene, mesh: meshes.StructureMesh) -> fem.Structure:
     if table.initial is not None:
         body.release_from_mode(table.initial.mode, table.initial.amplitude)
     return body
-
-
-def _load(load: BoundaryLoad | BodyLoad | PointLoad, mesh: meshes.StructureMesh) -> Any:
-    if isinstance(load, BoundaryLoad):
-        return fem.BoundaryLoad(boundary=load.boundary, total_force=load.total_force, ramp_time=load.ramp_time)
-    if isinstance(load, BodyLoad):
-        return fem.BodyForce(acceleration=load.acceleration, ramp_time=load.ramp_time)
-    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
-    point = tuple((low + high) / 2 + np.array(load.point))
-    return fem.PointLoad(point=point, force=load.force, ramp_time=load.ramp_time)
 
 
 def _particles(

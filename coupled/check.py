@@ -14,6 +14,7 @@ from coupled import bed as beds
 from coupled import cautions
 from coupled.build import Built, build, stable_ratio
 from coupled.contact_report import contact_rows
+from coupled.loads import load_rows
 from coupled.output.folder import SUMMARY
 from coupled.scene import Scene, SettledGrains, Time
 from coupled.step import StepLimits, limits_of, with_step
@@ -118,6 +119,7 @@ def _structure_rows(scene: Scene, built: Built) -> list[Row]:
     rows = [
         ("structure", "kind, nodes, cells", f"{scene.structure.kind}, {len(body.mesh.points)}, {len(body.mesh.cells)}"),
         ("structure", "step", f"{body.time_step:.4g} s"),
+        *load_rows(scene.structure.loads),
     ]
     if built.model.glued is not None:
         glued = built.model.glued

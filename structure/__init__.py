@@ -3,26 +3,32 @@
 from structure.elastic import ElasticStructure
 from structure.errors import StructureError
 from structure.free_rigid import FreeRigid
-from structure.loads import BodyForce, BoundaryLoad, PointLoad
+from structure.loads import BodyForce, BoundaryLoad, PointLoad, Pressure
 from structure.material import PlaneStrain, Rayleigh
 from structure.newmark import Newmark
 from structure.prescribed import PrescribedRigid
 from structure.protocol import Structure
+from structure.schedules import Constant, Ramp, Sine, Table
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
 
 __all__ = [
     "BodyForce",
     "BoundaryLoad",
+    "Constant",
     "ElasticStructure",
     "FreeRigid",
     "Newmark",
     "PlaneStrain",
     "PointLoad",
+    "Pressure",
     "PrescribedRigid",
+    "Ramp",
     "Rayleigh",
     "Structure",
+    "Sine",
     "StructureEnergies",
     "StructureError",
     "StructureFields",
     "StructurePeaks",
+    "Table",
 ]

@@ -25,3 +25,15 @@ def plane_vector(name: str, value: Sequence[float], unit: str) -> None:
     """Refuse what is not two finite numbers."""
     if np.shape(value) != (2,) or not np.all(np.isfinite(value)):
         raise StructureError(f"{name} = {value!r} must be two finite numbers, x and y ({unit})")
+
+
+def finite(name: str, value: float, unit: str) -> None:
+    """Refuse what is not a finite number."""
+    if not np.isfinite(value):
+        raise StructureError(f"{name} = {value!r} must be finite ({unit})")
+
+
+def schedule(value: object) -> None:
+    """Refuse what does not say how strong a load is at a time."""
+    if not callable(getattr(value, "factor", None)):
+        raise StructureError(f"schedule = {value!r} is not known: use a Constant, a Ramp, a Sine or a Table")

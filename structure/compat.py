@@ -81,3 +81,9 @@ def evaluate(expression: fem.Expression, domain: dolfinx.mesh.Mesh, cells: NDArr
     if hasattr(fem, "functionspace"):
         return expression.eval(domain, cells)
     return expression.eval(cells)
+
+
+def facet_nodes(space: fem.FunctionSpace, facets: int) -> list[NDArray[np.int32]]:
+    """Of each of the `facets` of a cell, the nodes on it among the cell's: its two vertices, then the others."""
+    layout = space.dofmap.dof_layout
+    return [np.array(layout.entity_closure_dofs(1, facet)) for facet in range(facets)]

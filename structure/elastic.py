@@ -76,7 +76,7 @@ class ElasticStructure:
         )
         self._stepper = self._theory.stepper
         self._exchange = boundary_exchange(self._body.nodes, mesh.outer_nodes, self.comm)
-        self._loads = LoadVectors(self._body, loads)
+        self._loads, self._beta = LoadVectors(self._body, loads), scheme.beta
         self._mass_solve: Callable[[PETSc.Vec, PETSc.Vec], None] | None = None
         self._ledger = ledger
         self.set_initial()
@@ -111,7 +111,7 @@ class ElasticStructure:
             boundary_force = np.zeros_like(self.polyline.points)
         self._steps = 0
         self._loss = self._external_work = self._boundary_work = 0.0
-        self._external = self._loads.at(0.0)
+        self._external = self._loads.at(0.0, stepper.displacement)
         stepper.force[:] = self._external
         self._force = agreed_force(boundary_force, self.polyline.points.shape, self.comm)
         self._exchange.add(self._force, stepper.force)
@@ -144,8 +144,10 @@ class ElasticStructure:
         """One step with nodal forces (n_b, 2) [N/m] that act at its end; rank 0's count."""
         stepper, before, old_force = self._stepper, self._external, self._force
         self._steps += 1
-        if self.time - self.time_step < self._loads.constant_from:
-            self._external = self._loads.at(self.time)
+        if self._loads.followers:
+            self._external = self._loads.at(self.time, self._predictor())
+        elif self.time - self.time_step < self._loads.constant_from:
+            self._external = self._loads.at(self.time, stepper.displacement)
         stepper.force[:] = self._external
         self._force = agreed_force(boundary_force, self.polyline.points.shape, self.comm)
         self._exchange.add(self._force, stepper.force)
@@ -193,7 +195,7 @@ class ElasticStructure:
 
     def external_force(self) -> NDArray[np.float64]:
         """Resultant (2,) [N/m] of the external loads at the present time."""
-        return self._loads.resultant(self.time)
+        return self._loads.resultant(self.time, self._stepper.displacement)
 
     def peaks(self) -> StructurePeaks:
         """Largest von Mises stress and principal strain over the Gauss points of all cells."""
@@ -241,6 +243,7 @@ class ElasticStructure:
         return {
             **{name: self._body.nodes.gather(array) for name, array in arrays.items()},
             **self._theory.memory(),
+            **({"external_force": self._body.nodes.gather(self._external)} if self._loads.followers else {}),
             "boundary_force": self._force.copy(),
             "sums": np.array(sums),
             "steps": np.array(self._steps),
@@ -256,8 +259,20 @@ class ElasticStructure:
         self._force = agreed_force(state["boundary_force"], self.polyline.points.shape, self.comm)
         self._loss, self._external_work, self._boundary_work = map(float, state["sums"])
         self._steps = int(state["steps"])
-        self._external = self._loads.at(self.time)
+        if self._loads.followers:
+            self._external = self._body.nodes.share(self._nodal("external_force", state["external_force"]))
+        else:
+            self._external = self._loads.at(self.time, self._stepper.displacement)
         self._read_boundary()
+
+    def _predictor(self) -> NDArray[np.float64]:
+        """Newmark's ``u + dt v + (1/2 - beta) dt^2 a`` [m], the shape that a pressure follows.
+
+        It differs from the shape at the end of the step by ``beta dt^2 a``: to the equation of motion
+        that is a change of the mass matrix, which feeds no energy.
+        """
+        stepper, dt = self._stepper, self.time_step
+        return stepper.displacement + dt * stepper.velocity + (0.5 - self._beta) * dt**2 * stepper.acceleration
 
     def _read_boundary(
         self,

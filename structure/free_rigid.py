@@ -19,24 +19,27 @@ from structure.load_vectors import LoadVectors
 from structure.loads import Load
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
 from structure.rigid_motion import NO_STRESS, RigidMotion, rigid_fields
+from structure.wrench import FollowingLoads, Wrench
 
 SWEEPS = 100
 
 
 class FreeRigid:
-    """Rigid body under loads and boundary forces, all of fixed direction in space.
+    """Rigid body under loads and boundary forces.
 
     Centroid by average acceleration. Rotation by a midpoint rule: with ``da`` the turn of the
     step and ``T_m`` the moment of the mean forces in the middle of it,
     ``I (w1 - w) = dt sin(da/2)/(da/2) T_m``, ``da = dt (w + w1)/2``. The chord in place of the
     arc makes the trapezoidal work of the nodal forces equal to the change of kinetic energy
-    exactly. Order 2. The interface is that of `ElasticStructure`.
+    exactly. Order 2. A pressure that follows turns with the body: its moment about the centroid stays,
+    ``I (w1 - w) = dt T``, its resultant turns; both do the work that the motion takes up. The interface
+    is that of `ElasticStructure`.
 
     Parameters
     ----------
     mesh, density, time_step, loads
         Shape, density [kg/m^3], step [s], external loads. The points where loads act turn with
-        the body; the directions of loads stay.
+        the body; the directions of loads stay, unless they follow.
     """
 
     def __init__(
@@ -56,9 +59,10 @@ class FreeRigid:
         self._reference_centroid = body.centroid
         self._arms = self.polyline.points - body.centroid
         self._loads = LoadVectors(body, loads)
-        full = [body.nodes.gather(vector) for vector in self._loads.full]
+        full = [body.nodes.gather(vector) for vector in self._loads.vectors]
         arms = mesh.points - body.centroid
         self._load_forces = np.array([_resultants(arms, force) for force in full]).reshape(-1, 4)
+        self._following = FollowingLoads(self._loads.followers, arms)
         self.set_initial()
 
     @property
@@ -89,7 +93,7 @@ class FreeRigid:
             spin=spin,
             acceleration=np.zeros(2),
         )
-        self._external = self._external_at(0.0)
+        self._external, self._wrench = self._external_at(0.0), self._following.at(0.0)
         self._boundary = _resultants(self._arms, self._force)
         self._settle(self._motion)
 
@@ -116,12 +120,13 @@ class FreeRigid:
         force = agreed_force(boundary_force, self._arms.shape, self.comm)
         self._steps += 1
         external, boundary = self._external_at(self.time), _resultants(self._arms, force)
+        wrench = self._following.at(self.time)
         external_mean = (self._external + external) / 2
         boundary_mean = (self._boundary + boundary) / 2
-        moved, after = self._step(external_mean + boundary_mean)
-        self._external_work += float(moved @ external_mean)
+        moved, after, following_work = self._step(external_mean + boundary_mean, wrench)
+        self._external_work += float(moved @ external_mean) + following_work
         self._boundary_work += float(moved @ boundary_mean)
-        self._force, self._external, self._boundary = force, external, boundary
+        self._force, self._external, self._boundary, self._wrench = force, external, boundary, wrench
         self._settle(after)
 
     def predict(self, interval: float, order: int = 2) -> NDArray[np.float64]:
@@ -161,7 +166,7 @@ class FreeRigid:
 
     def external_force(self) -> NDArray[np.float64]:
         """Resultant (2,) [N/m] of the external loads at the present time."""
-        return self._loads.resultant(self.time)
+        return self._external[:2] + self._wrench.force_on(self._motion.angle)
 
     def peaks(self) -> StructurePeaks:
         """Zero: a rigid body knows no stress."""
@@ -188,7 +193,7 @@ class FreeRigid:
         self._force = np.array(state["boundary_force"])
         self._external_work, self._boundary_work = map(float, state["sums"])
         self._steps = int(state["steps"])
-        self._external = self._external_at(self.time)
+        self._external, self._wrench = self._external_at(self.time), self._following.at(self.time)
         self._boundary = _resultants(self._arms, self._force)
         self._settle(
             RigidMotion(
@@ -203,12 +208,14 @@ class FreeRigid:
     def _external_at(self, time: float) -> NDArray[np.float64]:
         return self._loads.factors(time) @ self._load_forces
 
-    def _step(self, forces: NDArray[np.float64]) -> tuple[NDArray[np.float64], RigidMotion]:
-        """What the work of mean `forces` (4,) is paired with, and the motion after the step."""
+    def _step(self, forces: NDArray[np.float64], wrench: Wrench) -> tuple[NDArray[np.float64], RigidMotion, float]:
+        """What the work of mean `forces` (4,) is paired with, the motion after the step, the work of what follows."""
         dt, now = self.time_step, self._motion
-        velocity = now.velocity + dt * forces[:2] / self.mass
+        moment = (self._wrench.moment + wrench.moment) / 2
+        turn = self._turn(forces, moment)
+        push = (self._wrench.force_on(now.angle) + wrench.force_on(now.angle + turn)) / 2
+        velocity = now.velocity + dt * (forces[:2] + push) / self.mass
         moved = dt * (now.velocity + velocity) / 2
-        turn = self._turn(forces)
         middle, chord = now.angle + turn / 2, 2 * math.sin(turn / 2)
         pairing = np.array([*moved, chord * math.cos(middle), chord * math.sin(middle)])
         after = RigidMotion(
@@ -218,16 +225,16 @@ class FreeRigid:
             spin=2 * turn / dt - now.spin,
             acceleration=np.zeros(2),
         )
-        return pairing, after
+        return pairing, after, float(push @ moved) + moment * turn
 
-    def _turn(self, forces: NDArray[np.float64]) -> float:
-        """Turn [rad] of a step: the fixed point of the midpoint rule."""
+    def _turn(self, forces: NDArray[np.float64], moment: float) -> float:
+        """Turn [rad] of a step under mean `forces` (4,) and a `moment` [N] that follows: the rule's fixed point."""
         dt, now = self.time_step, self._motion
         free = turn = dt * now.spin
         for _ in range(SWEEPS):
             before = turn
             chord_ratio = math.sin(turn / 2) / (turn / 2) if turn else 1.0
-            torque = chord_ratio * _torque(forces, now.angle + turn / 2)
+            torque = chord_ratio * _torque(forces, now.angle + turn / 2) + moment
             turn = free + dt**2 / (2 * self.inertia) * torque
             if abs(turn - before) <= 4 * sys.float_info.epsilon * abs(turn):
                 return turn
@@ -241,8 +248,8 @@ class FreeRigid:
         forces = self._external + self._boundary
         self._motion = replace(
             motion,
-            acceleration=forces[:2] / self.mass,
-            angular_acceleration=_torque(forces, motion.angle) / self.inertia,
+            acceleration=(forces[:2] + self._wrench.force_on(motion.angle)) / self.mass,
+            angular_acceleration=(_torque(forces, motion.angle) + self._wrench.moment) / self.inertia,
         )
         self.boundary_displacement = self._motion.displacement_of(self._arms)
         self.boundary_velocity = self._motion.velocity_of(self._arms)

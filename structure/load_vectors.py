@@ -1,4 +1,4 @@
-"""Loads as vectors of nodal forces, assembled once and scaled by their ramps."""
+"""Loads as nodal forces: what keeps its direction assembled once, what follows the body computed anew."""
 
 from __future__ import annotations
 
@@ -10,77 +10,93 @@ from numpy.typing import NDArray
 from structure import forms
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
-from structure.loads import BodyForce, BoundaryLoad, Load, PointLoad, ramp
-
-BULGE = 1.05  # a point of a round shape may lie that much farther away than one of its polygon
+from structure.facets import boundary_tags
+from structure.loads import BodyForce, BoundaryLoad, Load, PointLoad, Pressure
+from structure.point_location import shares_at
+from structure.pressure import PressedBoundary
+from structure.schedules import Schedule
 
 
 class LoadVectors:
-    """The external force on a body as a function of time.
+    """The external force on a body as a function of time and, where a pressure follows, of its shape.
+
+    Loads with equal schedules are added up once: a step costs one scaled vector per different schedule.
 
     Attributes
     ----------
-    full : (loads, owned unknowns)
-        Nodal forces [N/m] of each load at full strength.
+    schedules, vectors : (schedules), (schedules, owned unknowns)
+        The different schedules, and this rank's nodal forces [N/m] of fixed direction at full strength.
+    followers : tuple of PressedBoundary
+        Pressures that follow.
     constant_from : float
-        Time [s] from which the force no longer changes.
+        Time [s] from which the force no longer changes on a body at rest.
     """
 
     def __init__(self, body: DiscreteBody, loads: Sequence[Load]) -> None:
-        self._loads = tuple(loads)
-        rows = [_vector(body, load) for load in self._loads]
-        self.full = np.array(rows).reshape(len(rows), body.unknowns)
-        self.constant_from = max((load.ramp_time for load in self._loads), default=0.0)
-        shares = self.full.reshape(len(rows), body.unknowns // 2, 2).sum(axis=1)
+        self.followers = tuple(
+            PressedBoundary(body, load) for load in loads if isinstance(load, Pressure) and load.follows
+        )
+        summed: dict[Schedule, NDArray[np.float64]] = {}
+        for load in loads:
+            if not (isinstance(load, Pressure) and load.follows):
+                vector = _vector(body, load)
+                summed[load.schedule] = summed[load.schedule] + vector if load.schedule in summed else vector
+        self.schedules = tuple(summed)
+        self.vectors = np.array(list(summed.values())).reshape(len(summed), body.unknowns)
+        timed = [*self.schedules, *(follower.schedule for follower in self.followers)]
+        self.constant_from = max((schedule.constant_from for schedule in timed), default=0.0)
+        shares = self.vectors.reshape(len(summed), body.unknowns // 2, 2).sum(axis=1)
         self._resultants = body.comm.allreduce(shares)
 
     def factors(self, time: float) -> NDArray[np.float64]:
-        """Ramp factors (loads,) at `time` [s]."""
-        return np.array([ramp(load, time) for load in self._loads])
+        """Factors (schedules,) at `time` [s]."""
+        return np.array([schedule.factor(time) for schedule in self.schedules])
 
-    def at(self, time: float) -> NDArray[np.float64]:
-        """This rank's nodal forces (owned unknowns,) [N/m] at `time` [s]."""
-        return self.factors(time) @ self.full
+    def at(self, time: float, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
+        """This rank's nodal forces (owned unknowns,) [N/m] at `time` [s], `displacement` (owned unknowns,) [m]."""
+        force = self.factors(time) @ self.vectors
+        for follower in self.followers:
+            now = follower.force(follower.displacement_of(displacement))
+            follower.add(follower.schedule.factor(time) * now, force)
+        return force
 
-    def resultant(self, time: float) -> NDArray[np.float64]:
+    def resultant(self, time: float, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """Resultant (2,) [N/m] over all ranks at `time` [s]."""
-        return self.factors(time) @ self._resultants
+        total = self.factors(time) @ self._resultants
+        for follower in self.followers:
+            now = follower.force(follower.displacement_of(displacement))
+            total = total + follower.schedule.factor(time) * now.sum(axis=0)
+        return total
+
+    def at_full_strength(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Nodal forces (owned unknowns,) and resultant (2,) [N/m] on the reference shape, every factor 1."""
+        force, resultant = self.vectors.sum(axis=0), self._resultants.sum(axis=0)
+        for follower in self.followers:
+            own = follower.force()
+            follower.add(own, force)
+            resultant = resultant + own.sum(axis=0)
+        return force, resultant
 
 
 def _vector(body: DiscreteBody, load: Load) -> NDArray[np.float64]:
+    """This rank's nodal forces (owned unknowns,) [N/m] of a load of fixed direction at full strength."""
     match load:
         case BodyForce():
             return body.weigh(np.tile(np.array(load.acceleration, float), body.unknowns // 2))
         case BoundaryLoad():
-            return _on_boundary(body, load)
+            weights = forms.boundary_weights(body.space, body.mesh, boundary_tags(body, load.boundary))
+            return np.outer(weights / body.comm.allreduce(weights.sum()), load.total_force).ravel()
         case PointLoad():
-            return _on_node(body, load)
-    raise StructureError(f"load {load!r} is not known: use a BodyForce, a BoundaryLoad or a PointLoad")
+            return _at_point(body, load)
+        case Pressure():
+            pressed, vector = PressedBoundary(body, load), np.zeros(body.unknowns)
+            pressed.add(pressed.force(), vector)
+            return vector
+    raise StructureError(f"load {load!r} is not known: use a BodyForce, a BoundaryLoad, a PointLoad or a Pressure")
 
 
-def _on_boundary(body: DiscreteBody, load: BoundaryLoad) -> NDArray[np.float64]:
-    named = body.mesh.boundaries
-    if load.boundary not in named:
-        raise StructureError(
-            f"boundary = '{load.boundary}' is not a boundary of this mesh: use one of {', '.join(sorted(named))}"
-        )
-    weights = forms.boundary_weights(body.space, body.mesh, named[load.boundary])
-    length = body.comm.allreduce(weights.sum())
-    return np.outer(weights / length, load.total_force).ravel()
-
-
-def _on_node(body: DiscreteBody, load: PointLoad) -> NDArray[np.float64]:
-    polyline = body.mesh.outer_polyline
-    distance = np.hypot(*(polyline.points - np.asarray(load.point)).T)
-    nearest = int(np.argmin(distance))
-    lengths = polyline.lengths()
-    reach = max(lengths[nearest], lengths[nearest - 1]) / 2
-    if distance[nearest] > reach * BULGE:
-        raise StructureError(
-            f"point = {tuple(load.point)!r} lies {distance[nearest]:.3g} m from the nearest node "
-            f"of the outer boundary, {tuple(polyline.points[nearest].tolist())!r}: at most half a "
-            f"facet, {reach:.3g} m, is allowed"
-        )
+def _at_point(body: DiscreteBody, load: PointLoad) -> NDArray[np.float64]:
     vector = np.zeros((body.unknowns // 2, 2))
-    vector[body.nodes.owned == body.mesh.outer_nodes[nearest]] = load.force
+    for node, share in zip(*shares_at(body.mesh, load.point), strict=True):
+        vector[body.nodes.owned == node] += share * np.asarray(load.force)
     return vector.ravel()

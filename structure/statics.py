@@ -20,7 +20,7 @@ SWEEPS = 100
 def balanced_displacement(
     body: DiscreteBody, stiffness: PETSc.Mat, material: PlaneStrain, loads: LoadVectors
 ) -> NDArray[np.float64]:
-    """Solution (n, 2) [m] of ``K u = f`` at full load, orthogonal to the rigid motions.
+    """Solution (n, 2) [m] of ``K u = f`` with every load at full strength, orthogonal to the rigid motions.
 
     K is singular: ``(K + s M) du = f - K u`` is repeated until nothing is left; each sweep
     multiplies the error in a mode omega by ``s/(omega^2 + s)``.
@@ -30,9 +30,9 @@ def balanced_displacement(
     StructureError
         The loads have a resultant force or moment.
     """
-    force = loads.at(loads.constant_from)
+    force, resultant = loads.at_full_strength()
     rigid = rigid_motions(body)
-    _check_balance(body, loads, force, rigid)
+    _check_balance(body, resultant, force, rigid)
     shift = 1e-2 * stiffness_scale(body, material)
     shifted = stiffness.copy()
     shifted.axpy(shift, body.mass_matrix, structure=PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
@@ -53,7 +53,7 @@ def balanced_displacement(
 
 def _check_balance(
     body: DiscreteBody,
-    loads: LoadVectors,
+    resultant: NDArray[np.float64],
     force: NDArray[np.float64],
     rigid: NDArray[np.float64],
 ) -> None:
@@ -61,6 +61,6 @@ def _check_balance(
     scale = np.sqrt(body.total(float(force @ force)) / body.mass)
     if work.max() > LARGEST_IMBALANCE * scale:
         raise StructureError(
-            f"loads with the resultant {loads.resultant(loads.constant_from).tolist()} N/m do not "
+            f"loads with the resultant {resultant.tolist()} N/m do not "
             "balance in force and moment: a free body has no position of rest under them"
         )

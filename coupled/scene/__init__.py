@@ -10,21 +10,16 @@ from coupled.scene.output import Output, Time
 from coupled.scene.scene import Scene
 from coupled.scene.shape import Beam, Tube
 from coupled.scene.structure import (
-    BodyLoad,
-    BoundaryLoad,
     Initial,
     Newmark,
     Path,
     Placement,
-    PointLoad,
     Rayleigh,
     Structure,
 )
 
 __all__ = [
     "Beam",
-    "BodyLoad",
-    "BoundaryLoad",
     "Box",
     "Contact",
     "Damping",
@@ -35,7 +30,6 @@ __all__ = [
     "Output",
     "Path",
     "Placement",
-    "PointLoad",
     "Rayleigh",
     "Recipe",
     "Row",

@@ -11,6 +11,7 @@ import tomli_w
 from pydantic import BaseModel, ValidationError
 
 from coupled.errors import SceneError
+from coupled.scene.columns import read_schedules
 from coupled.scene.find import find_scene
 from coupled.scene.overrides import apply_override, parse_override
 from coupled.scene.refusal import translate
@@ -25,7 +26,8 @@ def load_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
 
     A scene that names a bed takes `units`, `gravity`, `box`, `contact` and `damping` from it
     unless it has its own; if its own `contact` has nothing but `pairs`, they are added to the bed's
-    contact law. Overrides act after that; those that start with ``bed.`` act on the bed.
+    contact law. Overrides act after that; those that start with ``bed.`` act on the bed. The rows of a
+    CSV file that a load's schedule names become part of the scene.
 
     Parameters
     ----------
@@ -58,6 +60,7 @@ def _load(path: Path, overrides: list[Override], above: tuple[Path, ...]) -> Sce
         _resolve_bed(data, path, own, for_bed, above)
         for keys, value in own:
             apply_override(data, keys, value)
+        read_schedules(data, path.parent)
         return Scene.model_validate(data)
     except ValidationError as error:
         raise _named(path, translate(error, DESCRIPTIONS)) from None

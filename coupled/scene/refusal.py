@@ -62,7 +62,7 @@ def translate(error: ValidationError, describe: dict[str, str]) -> SceneError:
         Descriptions of the keys by their name without list indices.
     """
     problems = error.errors(include_url=False)
-    problems.sort(key=lambda problem: problem["type"] != "unknown_key")
+    problems.sort(key=lambda problem: problem["type"] not in ("unknown_key", "replaced_key"))
     problem = problems[0]
     path = [str(part) for part in problem["loc"] if not str(part).startswith("<")]
     plain = ".".join(part for part in path if not part.isdigit())
@@ -78,6 +78,9 @@ def _sentence(problem: Any, key: str, meaning: str, is_table: bool) -> SceneErro
         full = f"{key}.{unknown}" if key else unknown
         hint = nearest(unknown, context["allowed"])
         return SceneError(f"{full} is not a known key{context['beside']}: {hint}.", key=full)
+    if kind == "replaced_key":
+        full = f"{key}.{context['key']}"
+        return SceneError(f"{full} is no longer a key: write {context['instead']}.", key=full)
     if kind == "missing":
         return _missing(key, value, meaning, is_table)
     if kind == "unknown_kind":

@@ -20,9 +20,9 @@ class _Shape(Table):
 
 
 class Tube(_Shape):
-    """A ring; boundary `loaded_arc` is its upper 120 degrees."""
+    """A ring; boundary `loaded_arc` is its upper 120 degrees, `free_arc` the rest of `outer`."""
 
-    boundaries: ClassVar[tuple[str, ...]] = ("outer", "inner", "loaded_arc")
+    boundaries: ClassVar[tuple[str, ...]] = ("outer", "inner", "loaded_arc", "free_arc")
     glueable: ClassVar[tuple[str, ...]] = ("outer", "loaded_arc")
 
     outer_radius: Positive = Field(description="outer radius [m]")

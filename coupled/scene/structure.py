@@ -1,14 +1,15 @@
-"""Tables of the structure: material, place, loads, prescribed path."""
+"""Tables of the structure: material, place, prescribed path."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, model_validator
 
+from coupled.scene.loads import Load
 from coupled.scene.refusal import refusal
 from coupled.scene.shape import Beam, Shape, Tube
-from coupled.scene.types import Count, NonNegative, Number, Positive, Table, Vector
+from coupled.scene.types import Count, NonNegative, Number, Positive, Table
 
 
 class Placement(Table):
@@ -33,56 +34,6 @@ class Newmark(Table):
 
     beta: Positive = Field(0.25, description="beta [-]")
     gamma: Positive = Field(0.5, description="gamma [-]")
-
-
-class BoundaryLoad(Table):
-    """A force spread evenly over the length of a boundary."""
-
-    beside: ClassVar[str] = ' together with kind = "boundary"'
-
-    kind: Literal["boundary"] = "boundary"
-    boundary: str = Field(description="name of the loaded boundary")
-    total_force: Vector = Field(description="resultant [N per m of thickness]")
-    ramp_time: NonNegative = Field(0.0, description="time to reach the full force [s]")
-
-
-class BodyLoad(Table):
-    """A uniform acceleration of the whole structure, such as its own weight."""
-
-    beside: ClassVar[str] = ' together with kind = "body"'
-
-    kind: Literal["body"] = "body"
-    acceleration: Vector = Field(description="acceleration [m/s2]")
-    ramp_time: NonNegative = Field(0.0, description="time to reach the full load [s]")
-
-
-class PointLoad(Table):
-    """A force on the boundary node nearest to a point."""
-
-    beside: ClassVar[str] = ' together with kind = "point"'
-
-    kind: Literal["point"] = "point"
-    point: Vector = Field(description="point relative to the centroid of the shape [m]")
-    force: Vector = Field(description="force [N per m of thickness]")
-    ramp_time: NonNegative = Field(0.0, description="time to reach the full force [s]")
-
-
-def _load_kind(data: Any) -> str | None:
-    kind = data.get("kind") if isinstance(data, dict) else getattr(data, "kind", None)
-    return f"<{kind}>" if kind in ("boundary", "body", "point") else None
-
-
-Load = Annotated[
-    Annotated[BoundaryLoad, Tag("<boundary>")]
-    | Annotated[BodyLoad, Tag("<body>")]
-    | Annotated[PointLoad, Tag("<point>")],
-    Discriminator(
-        _load_kind,
-        custom_error_type="unknown_kind",
-        custom_error_message="unknown kind",
-        custom_error_context={"allowed": ["boundary", "body", "point"]},
-    ),
-]
 
 
 class Path(Table):

@@ -11,7 +11,7 @@ def rigid_beam_on_springs(
     *,
     step: float,
     load: float,
-    ramp_time: float = 0.0,
+    ramp_over: float | None = None,
     normal_damping: float = 0.0,
     tangential_damping: float = 0.0,
     more_loads: Sequence[dict[str, Any]] = (),
@@ -19,7 +19,9 @@ def rigid_beam_on_springs(
 ) -> Built:
     """The scene `winkler_beam` with a rigid beam, 121 springs, and a uniform load [N/m] on top."""
     tables = load_scene("winkler_beam", [f"time.step={step!r}"]).model_dump(exclude_none=True)
-    uniform = {"kind": "boundary", "boundary": "top", "total_force": [0.0, -load], "ramp_time": ramp_time}
+    uniform: dict[str, Any] = {"kind": "boundary", "boundary": "top", "total_force": [0.0, -load]}
+    if ramp_over is not None:
+        uniform["schedule"] = {"kind": "ramp", "over": ramp_over}
     tables["structure"] = {
         "kind": "free_rigid",
         "density": tables["structure"]["density"],

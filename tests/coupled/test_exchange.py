@@ -25,7 +25,7 @@ def oscillation(
     model = rigid_beam_on_springs(
         step=window / substeps,
         load=LOAD,
-        ramp_time=100.5 * window,
+        ramp_over=100.5 * window,
         normal_damping=2 * damping_ratio * np.sqrt(STIFFNESS * MASS) / SPRINGS,
         interface={"substeps": substeps, "exchange": exchange},
     ).model
@@ -62,7 +62,7 @@ def test_elastic_beam_is_stable_up_to_the_limit_of_its_consistent_mass(dashpot: 
     for share in (0.97, 1.03):
         model = elastic_beam(
             f"time.step={share * limit!r}",
-            "structure.loads.0.ramp_time=0.02",
+            "structure.loads.0.schedule.over=0.02",
             "structure.rayleigh.stiffness_factor=0.0",
             f"contact.normal_damping={dashpot}",
             "interface.largest_stiffness_ratio=10.0",
@@ -106,7 +106,7 @@ def test_step_beyond_the_stable_ratio_is_refused() -> None:
 
 
 def elastic_beam(*options: str) -> Model:
-    return build(load_scene("winkler_beam", ["structure.loads.0.ramp_time=0.2", *options])).model
+    return build(load_scene("winkler_beam", ["structure.loads.0.schedule.over=0.2", *options])).model
 
 
 def test_substeps_do_not_change_the_answer_at_rest() -> None:

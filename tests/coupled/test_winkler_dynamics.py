@@ -58,9 +58,9 @@ def test_lagged_force_is_a_negative_dashpot_of_k_dt() -> None:
 def test_eccentric_load_tilts_a_rigid_beam_as_springs_of_equal_length_do() -> None:
     """Statics of a rigid beam: pressures linear in x, sum k and sum k x^2 against force and moment."""
     step, arm, extra = 2e-5, 0.25, 2e4
-    load = {"kind": "point", "point": [arm, 0.025], "force": [0.0, -extra], "ramp_time": 0.1}
+    load = {"kind": "point", "point": [arm, 0.025], "force": [0.0, -extra], "schedule": {"kind": "ramp", "over": 0.1}}
     built = rigid_beam_on_springs(
-        step=step, load=LOAD, ramp_time=0.1, normal_damping=C_N, tangential_damping=24.7, more_loads=[load]
+        step=step, load=LOAD, ramp_over=0.1, normal_damping=C_N, tangential_damping=24.7, more_loads=[load]
     )
     model = built.model
     model.advance(round(0.3 / step))

@@ -15,7 +15,7 @@ from mpi4py import MPI
 from coupled.build import build
 from coupled.scene import load_scene
 
-scene = load_scene("winkler_beam", ["structure.loads.0.ramp_time=0.02"])
+scene = load_scene("winkler_beam", ["structure.loads.0.schedule.over=0.02"])
 model = build(scene).model
 model.advance({STEPS})
 body = model.structure.energies()  # collective

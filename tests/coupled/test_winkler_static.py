@@ -32,12 +32,12 @@ def settled(*loads: str, options: tuple[str, ...] = (), step: float = 2e-5) -> M
 
 
 def uniform(total: float) -> str:
-    return f'{{kind="boundary", boundary="top", total_force=[0.0, {-total!r}], ramp_time={RAMP}}}'
+    return f'{{kind="boundary", boundary="top", total_force=[0.0, {-total!r}], schedule={{kind="ramp", over={RAMP}}}}}'
 
 
 def point(x: float, force: float) -> str:
     place = f"[{float(x) - LENGTH / 2!r}, {HEIGHT / 2}]"
-    return f'{{kind="point", point={place}, force=[0.0, {-float(force)!r}], ramp_time={RAMP}}}'
+    return f'{{kind="point", point={place}, force=[0.0, {-float(force)!r}], schedule={{kind="ramp", over={RAMP}}}}}'
 
 
 def left_half(total: float) -> list[str]:

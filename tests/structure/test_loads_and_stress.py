@@ -4,14 +4,14 @@ import meshes
 import numpy as np
 import pytest
 from scipy.integrate import simpson
-from structure import BodyForce, BoundaryLoad, ElasticStructure, PlaneStrain, PointLoad
+from structure import BodyForce, BoundaryLoad, ElasticStructure, PlaneStrain, PointLoad, Ramp
 
 
 def test_loads_ramp_and_add_up(soft: PlaneStrain) -> None:
     tube = meshes.tube(outer_radius=0.05, inner_radius=0.04)
     loads = [
-        BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -1000.0), ramp_time=0.5),
-        PointLoad(point=(0.05, 0.0), force=(7.0, 0.0), ramp_time=0.25),
+        BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -1000.0), schedule=Ramp(over=0.5)),
+        PointLoad(point=(0.05, 0.0), force=(7.0, 0.0), schedule=Ramp(over=0.25)),
     ]
     body = ElasticStructure(tube, material=soft, time_step=0.1, loads=loads)
     seen = [body.external_force()]

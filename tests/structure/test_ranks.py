@@ -16,7 +16,7 @@ tube = meshes.tube(outer_radius=0.05, inner_radius=0.04)
 line = tube.outer_polyline
 comm = tube.domain.comm
 material = PlaneStrain(youngs_modulus=70e7, poissons_ratio=0.35, density=2700.0)
-loads = [BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -100.0), ramp_time=2e-3),
+loads = [BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -100.0), schedule=Ramp(over=2e-3)),
          PointLoad(point=(0.0, -0.05), force=(0.0, 90.0)), BodyForce(acceleration=(1.0, -9.81))]
 damping = Rayleigh(mass_factor=0.5, stiffness_factor=1e-5)
 body = ElasticStructure(tube, material=material, time_step=4e-5, damping=damping, loads=loads)

@@ -12,6 +12,7 @@ from structure import (
     PlaneStrain,
     PointLoad,
     PrescribedRigid,
+    Ramp,
     Rayleigh,
     StructureError,
 )
@@ -47,7 +48,7 @@ def path(*rows) -> PrescribedRigid:
         (lambda: Newmark(beta=0.25, gamma=0.6), "beta = 0.25"),
         (lambda: Newmark(beta=0.0, gamma=0.5), "beta = 0.0"),
         (lambda: BodyForce(acceleration=(0.0, float("nan"))), "acceleration"),
-        (lambda: BodyForce(acceleration=(0.0, 1.0), ramp_time=-1.0), "ramp_time = -1.0"),
+        (lambda: BodyForce(acceleration=(0.0, 1.0), schedule=Ramp(over=-1.0)), "over = -1.0"),
         (lambda: elastic(time_step=0.0), "time_step = 0.0"),
         (
             lambda: elastic(loads=[BoundaryLoad(boundary="loaded_arc", total_force=(0.0, 1.0))]),

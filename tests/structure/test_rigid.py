@@ -4,7 +4,7 @@ import meshes
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from structure import BodyForce, BoundaryLoad, FreeRigid, PointLoad, PrescribedRigid
+from structure import BodyForce, BoundaryLoad, FreeRigid, PointLoad, PrescribedRigid, Ramp
 
 
 @pytest.fixture(scope="module")
@@ -132,7 +132,7 @@ def test_pulled_pendulum_meets_the_differential_equation(bar: meshes.StructureMe
 
 def test_energy_balance_of_a_tumbling_body(bar: meshes.StructureMesh) -> None:
     loads = [
-        BoundaryLoad(boundary="right", total_force=(1.0, 4.0), ramp_time=0.5),
+        BoundaryLoad(boundary="right", total_force=(1.0, 4.0), schedule=Ramp(over=0.5)),
         BodyForce(acceleration=(0.0, -1.0)),
     ]
     body = FreeRigid(bar, density=3.0, time_step=0.01, loads=loads)
@@ -158,7 +158,7 @@ def test_restored_body_goes_on_with_the_same_bits(kind: str, tube: meshes.Struct
     def build() -> PrescribedRigid | FreeRigid:
         if kind == "prescribed":
             return PrescribedRigid(tube, path=[(0, 0, 0), (1, 0.3, -0.1)], time_step=0.01)
-        load = BoundaryLoad(boundary="loaded_arc", total_force=(1.0, -4.0), ramp_time=0.3)
+        load = BoundaryLoad(boundary="loaded_arc", total_force=(1.0, -4.0), schedule=Ramp(over=0.3))
         return FreeRigid(tube, density=2700.0, time_step=0.01, loads=[load])
 
     forces = np.random.default_rng(4).normal(size=(40, *tube.outer_polyline.points.shape))

@@ -10,6 +10,7 @@ from structure import (
     Newmark,
     PlaneStrain,
     PointLoad,
+    Ramp,
     Rayleigh,
     StructureEnergies,
     StructureError,
@@ -51,10 +52,10 @@ def test_period_error_is_of_order_two(aluminium: PlaneStrain) -> None:
 def test_energy_balance_closes_to_round_off(cell: str, order: int, element: str, soft: PlaneStrain) -> None:
     tube = meshes.tube(outer_radius=0.05, inner_radius=0.04, cell=cell, order=order)
     loads = [
-        BoundaryLoad(boundary="loaded_arc", total_force=(3.0, -10.0), ramp_time=0.02),
+        BoundaryLoad(boundary="loaded_arc", total_force=(3.0, -10.0), schedule=Ramp(over=0.02)),
         BoundaryLoad(boundary="inner", total_force=(-2.0, 1.0)),
-        BodyForce(acceleration=(0.0, -9.81), ramp_time=0.03),
-        PointLoad(point=(0.0, -0.05), force=(0.0, 15.0), ramp_time=0.01),
+        BodyForce(acceleration=(0.0, -9.81), schedule=Ramp(over=0.03)),
+        PointLoad(point=(0.0, -0.05), force=(0.0, 15.0), schedule=Ramp(over=0.01)),
     ]
     body = ElasticStructure(
         tube,
@@ -81,7 +82,7 @@ def test_energy_balance_closes_to_round_off(cell: str, order: int, element: str,
 def test_impulse_is_the_change_of_momentum(soft: PlaneStrain) -> None:
     tube = meshes.tube(outer_radius=0.05, inner_radius=0.04)
     dt, gravity, ramp_time = 1e-4, np.array([1.0, -9.81]), 95.5e-4  # ends between two steps
-    fall = BodyForce(acceleration=tuple(gravity), ramp_time=ramp_time)
+    fall = BodyForce(acceleration=tuple(gravity), schedule=Ramp(over=ramp_time))
     body = ElasticStructure(tube, material=soft, time_step=dt, loads=[fall])
     rng = np.random.default_rng(3)
     last = np.zeros_like(body.polyline.points)
@@ -154,7 +155,7 @@ def test_restored_structure_goes_on_with_the_same_bits(soft: PlaneStrain) -> Non
     tube = meshes.tube(outer_radius=0.05, inner_radius=0.04)
 
     def build() -> ElasticStructure:
-        load = BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -10.0), ramp_time=0.01)
+        load = BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -10.0), schedule=Ramp(over=0.01))
         damping = Rayleigh(mass_factor=0.1, stiffness_factor=1e-4)
         return ElasticStructure(tube, material=soft, time_step=1e-4, damping=damping, loads=[load])
 

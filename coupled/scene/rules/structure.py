@@ -1,11 +1,12 @@
-"""Rules of the structure: material, shape, place, loads and path."""
+"""Rules of the structure: material, shape, place and path."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from coupled.scene.refusal import Plain, missing, nearest, refusal
-from coupled.scene.structure import BoundaryLoad, Newmark, Structure
+from coupled.scene.refusal import Plain, missing, refusal
+from coupled.scene.rules.loads import check_loads
+from coupled.scene.structure import Newmark, Structure
 
 if TYPE_CHECKING:
     from coupled.scene.scene import Scene
@@ -31,7 +32,7 @@ def check_structure(scene: Scene) -> None:
         return
     _check_kind(structure)
     _check_shape(structure)
-    _check_loads(structure)
+    check_loads(structure)
     if structure.newmark is not None:
         _check_newmark(structure.newmark)
     if structure.path is not None:
@@ -68,17 +69,6 @@ def _check_shape(structure: Structure) -> None:
             tube.inner_radius,
             f"must be less than outer_radius = {tube.outer_radius:g} m; reduce it",
         )
-
-
-def _check_loads(structure: Structure) -> None:
-    known = structure.shape.boundaries
-    for index, load in enumerate(structure.loads):
-        if isinstance(load, BoundaryLoad) and load.boundary not in known:
-            raise refusal(
-                f"structure.loads.{index}.boundary",
-                load.boundary,
-                f"is no boundary of this shape; {nearest(load.boundary, known)}",
-            )
 
 
 def _check_newmark(newmark: Newmark) -> None:

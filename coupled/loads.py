@@ -1,0 +1,82 @@
+"""From the tables of loads to the loads of the structure, and to what `leito check` says of them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import structure as fem
+from coupled.scene import loads as tables
+from meshes import StructureMesh
+from structure.loads import Load
+from structure.schedules import Schedule
+
+
+def load_of(table: tables.Load, mesh: StructureMesh) -> Load:
+    """The load that a table describes; a point counts from the centroid of the shape."""
+    schedule = _schedule(table.schedule)
+    match table:
+        case tables.BoundaryLoad():
+            return fem.BoundaryLoad(boundary=table.boundary, total_force=table.total_force, schedule=schedule)
+        case tables.PressureLoad():
+            return fem.Pressure(
+                boundary=table.boundary, pressure=table.pressure, follows=table.follows, schedule=schedule
+            )
+        case tables.BodyLoad():
+            return fem.BodyForce(acceleration=table.acceleration, schedule=schedule)
+    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
+    point = tuple(((low + high) / 2 + np.array(table.point)).tolist())
+    return fem.PointLoad(point=point, force=table.force, schedule=schedule)
+
+
+def _schedule(table: tables.Schedule) -> Schedule:
+    match table:
+        case tables.Ramp():
+            return fem.Ramp(over=table.over)
+        case tables.Sine():
+            return fem.Sine(frequency=table.cycles_per_second, phase=table.phase, offset=table.offset)
+        case tables.Rows():
+            return fem.Table(times=table.times, factors=table.factors)
+    return fem.Constant()
+
+
+def load_rows(loads: tuple[tables.Load, ...]) -> list[tuple[str, str, str]]:
+    """Rows (section, quantity, value) with what acts where, and its schedule."""
+    return [("loads", _place(load), f"{_strength(load)}, {_course(load.schedule)}") for load in loads]
+
+
+def _place(load: tables.Load) -> str:
+    match load:
+        case tables.BoundaryLoad():
+            return f"on {load.boundary}"
+        case tables.PressureLoad():
+            return f"pressure on {load.boundary}" + (", follows" if load.follows else "")
+        case tables.BodyLoad():
+            return "on the whole body"
+    return "at {:g}, {:g} m from the centroid".format(*load.point)
+
+
+def _strength(load: tables.Load) -> str:
+    match load:
+        case tables.BoundaryLoad():
+            return "{:g}, {:g} N/m".format(*load.total_force)
+        case tables.PressureLoad():
+            return f"{load.pressure:g} Pa"
+        case tables.BodyLoad():
+            return "{:g}, {:g} m/s2".format(*load.acceleration)
+    return "{:g}, {:g} N/m".format(*load.force)
+
+
+def _course(schedule: tables.Schedule) -> str:
+    match schedule:
+        case tables.Ramp():
+            return f"ramp over {schedule.over:g} s"
+        case tables.Sine():
+            mean = f" about {schedule.offset:g}" if schedule.offset else ""
+            phase = f" from {math.degrees(schedule.phase):.4g} degrees" if schedule.phase else ""
+            return f"sine of {schedule.cycles_per_second:.4g} Hz{mean}{phase}"
+        case tables.Rows():
+            low, high = min(schedule.factors), max(schedule.factors)
+            return f"table of {len(schedule.times)} rows up to {schedule.times[-1]:g} s, factor {low:g} to {high:g}"
+    return "constant"
