@@ -96,10 +96,11 @@ def rigid_tube_trench(folder: Path, history: History) -> list[Check]:
 
 def elastic_tube(folder: Path, history: History) -> list[Check]:
     frame, reaction = structure_frame(folder), near(history, "reaction_y", 5.0)
+    cells = load_scene(folder / "scene.toml").structure.element
     places = frame["points"] + frame["displacement"][:, :2]
     height = (places[:, 1] - places[:, 1].mean()) / np.ptp(places[:, 1])
     hottest, lowest = height[frame["von_mises"].argmax()], height[frame["grain_force"][:, 1].argmax()]
-    stress = float(history["max_von_mises"][-1]) / 1e6
+    gauss, nodal = float(history["max_von_mises"][-1]) / 1e6, frame["von_mises"].max() / 1e6
     return [
         Check("elastic_tube", "reaction at rest", "1000 N/m", f"{reaction:.2f} N/m", abs(reaction / 1000 - 1) < 0.02),
         Check(
@@ -112,7 +113,7 @@ def elastic_tube(folder: Path, history: History) -> list[Check]:
         ),
         Check(
             "elastic_tube", "largest von Mises stress", "27.7 MPa; equilibrium allows 0.36 to 0.79",
-            f"{stress:.2f} MPa at the Gauss points of 60 locked quadrilaterals", False,
+            f"{gauss:.2f} MPa at Gauss points, {nodal:.2f} of nodal averages (60 cells, {cells})", False,
         ),
     ]  # fmt: skip
 
