@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
 from meshes.errors import MeshError
-from meshes.polyline import trace
+from meshes.polyline import BoundaryPolyline, trace
 from meshes.session import gmsh, gmshio, session
 from meshes.structure_mesh import StructureMesh
 
@@ -30,6 +31,15 @@ class Drawing:
     surfaces: list[int]
     snap: Callable[[NDArray[np.float64]], NDArray[np.float64]]
     auxiliary: tuple[int, ...] = ()
+
+
+class Plain(NamedTuple):
+    """What is the same on every rank: nodes, cells, and the outer boundary with the nodes under it."""
+
+    points: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    polyline: BoundaryPolyline
+    outer_nodes: NDArray[np.int64]
 
 
 def transfinite_surface(curves: list[int], corners: list[int], cell: str, arrangement: str = "AlternateLeft") -> int:
@@ -68,23 +78,43 @@ def build(
         Where the outer polyline begins.
     """
     tag = {name: number for number, name in enumerate(names, start=1)}
+    return shared(
+        lambda: _generate(draw(), tag, outer, start, order),
+        boundaries={public: tuple(tag[p] for p in pieces) for public, pieces in aliases.items()},
+        cell=cell,
+        order=order,
+        comm=comm,
+    )
+
+
+def shared(
+    model: Callable[[], Plain], *, boundaries: dict[str, tuple[int, ...]], cell: str, order: int, comm: MPI.Intracomm
+) -> StructureMesh:
+    """Distribute a model that rank 0 makes in gmsh.
+
+    Parameters
+    ----------
+    model
+        Fills the current gmsh model with a mesh whose boundaries are tagged; called on rank 0 only.
+    boundaries
+        Name of a boundary -> tags of its facets.
+    """
     if comm.rank == 0:
         with session():
-            plain = _generate(draw(), tag, outer, start, order)
+            plain = model()
             comm.bcast(plain, root=0)
             domain, facet_tags = _distribute(comm)
     else:
         plain = comm.bcast(None, root=0)
         domain, facet_tags = _distribute(comm)
-    points, cells, polyline, outer_nodes = plain
     return StructureMesh(
         domain=domain,
         facet_tags=facet_tags,
-        boundaries={public: tuple(tag[p] for p in pieces) for public, pieces in aliases.items()},
-        outer_polyline=polyline,
-        outer_nodes=outer_nodes,
-        points=points,
-        cells=cells,
+        boundaries=boundaries,
+        outer_polyline=plain.polyline,
+        outer_nodes=plain.outer_nodes,
+        points=plain.points,
+        cells=plain.cells,
         cell=cell,
         order=order,
     )
@@ -96,8 +126,8 @@ def _generate(
     outer: tuple[str, ...],
     start: tuple[float, float],
     order: int,
-) -> tuple:
-    """Mesh the drawing on this rank; returns nodes, cells, polyline and nodes of the polyline."""
+) -> Plain:
+    """Mesh the drawing on this rank."""
     gmsh.model.geo.synchronize()
     for name, number in tag.items():
         gmsh.model.addPhysicalGroup(1, drawing.curves[name], number)
@@ -115,8 +145,7 @@ def _generate(
     points[:] = places[:, :2]
     cells = np.vstack([_connectivity(2, surface) for surface in drawing.surfaces])
     edges = {name: np.vstack([_connectivity(1, curve) for curve in drawing.curves[name]]) for name in outer}
-    polyline, outer_nodes = trace(points, edges, start)
-    return points, cells, polyline, outer_nodes
+    return Plain(points, cells, *trace(points, edges, start))
 
 
 def _snap(snap: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> None:

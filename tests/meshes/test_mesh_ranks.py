@@ -14,8 +14,15 @@ import meshes, numpy as np
 tube = meshes.tube(outer_radius=0.05, inner_radius=0.04, order=2)
 beam = meshes.beam(length=1.0, height=0.05, cell="triangle")
 rank = tube.domain.comm.rank
+given = meshes.from_arrays(beam.points, beam.cells, boundaries={"foot": beam.outer_nodes[beam.outer_polyline.facets[:9]]})
+for refused in (lambda: meshes.from_gmsh("absent.msh"), lambda: meshes.from_arrays(beam.points, beam.cells[:1])):
+    try:                                        # on every rank: one alone would leave the other waiting
+        refused()
+    except meshes.MeshError:
+        continue
+    raise AssertionError("an unsound mesh is taken")
 arrays = {}
-for name, mesh in (("tube", tube), ("beam", beam)):
+for name, mesh in (("tube", tube), ("beam", beam), ("given", given)):
     line = mesh.outer_polyline
     arrays |= {name + key: value for key, value in (
         ("points", mesh.points), ("cells", mesh.cells), ("line", line.points),

@@ -5,29 +5,10 @@ import signal
 import meshes
 import numpy as np
 import pytest
-import ufl
-from dolfinx import fem
-from mpi4py import MPI
+from measures import shoelace, tagged_length
 
 ELEMENTS = [("quadrilateral", 1), ("triangle", 1), ("quadrilateral", 2), ("triangle", 2)]
 ROUND_OFF = 1e-12  # some hundred additions of lengths known to eps
-
-
-def tagged_length(mesh: meshes.StructureMesh, name: str) -> float:
-    ds = ufl.Measure(
-        "ds",
-        domain=mesh.domain,
-        subdomain_data=mesh.facet_tags,
-        metadata={"quadrature_degree": 8},
-    )
-    one = fem.Constant(mesh.domain, 1.0)
-    share = sum(fem.assemble_scalar(fem.form(one * ds(tag))) for tag in mesh.boundaries[name])
-    return mesh.domain.comm.allreduce(share, op=MPI.SUM)
-
-
-def shoelace(points: np.ndarray) -> float:
-    x, y = points.T
-    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) / 2)
 
 
 @pytest.mark.parametrize(("cell", "order"), ELEMENTS)
