@@ -1,5 +1,6 @@
 # make demo         install what is missing, then settle a bed and press an elastic tube into it
 # make test         run the tests
+# make test-debian13  run them on Debian 13, in a chroot (as root)
 # make bench        measure the speed
 # make bench-peers  measure it against other codes
 # make validate     compare with the sources' results (long)
@@ -13,7 +14,7 @@ export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
-.PHONY: install install-test demo test bench bench-peers validate clean
+.PHONY: install install-test demo test test-debian13 bench bench-peers validate clean
 
 install:
 	@.ci/install
@@ -27,6 +28,10 @@ demo: install
 
 test: install-test
 	@$(PYTHON) -m pytest $(ARGS)
+
+# ARGS reaches the script through the environment.
+test-debian13:
+	@.ci/debian13
 
 bench: install
 	@$(PYTHON) benchmarks/run.py $(ARGS)
