@@ -166,11 +166,8 @@ def _connectivity(dimension: int, entity: int) -> NDArray[np.int64]:
 
 def _distribute(comm: MPI.Intracomm) -> tuple:
     """The current gmsh model of rank 0 as a distributed mesh with facet tags."""
-    # compat: a tuple (mesh, cell tags, facet tags) up to 0.9, an object with names from 0.10
-    result = gmshio.model_to_mesh(gmsh.model, comm, 0, gdim=2)
-    if isinstance(result, tuple):
-        return result[0], result[2]
-    return result.mesh, result.facet_tags
+    domain, _, facet_tags = gmshio.model_to_mesh(gmsh.model, comm, 0, gdim=2)[:3]
+    return domain, facet_tags
 
 
 def check_elements(cell: str, order: int) -> None:

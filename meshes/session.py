@@ -21,7 +21,11 @@ def _interrupt_handler_kept() -> Iterator[None]:
 
 with _interrupt_handler_kept():
     import gmsh
-    from dolfinx.io import gmshio
+
+    try:
+        from dolfinx.io import gmshio
+    except ImportError:  # dolfinx 0.10 and later, not tested
+        from dolfinx.io import gmsh as gmshio
 
 __all__ = ["gmsh", "gmshio", "session"]
 

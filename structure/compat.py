@@ -1,4 +1,11 @@
-"""What differs between versions of dolfinx. Tested with 0.5.2; the names of 0.9 are known."""
+"""What differs between versions of dolfinx: this module alone asks, by looking for a name, never for a number.
+
+Tested with 0.5.2 (Debian 12: UFL 2022, PETSc 3.18) and 0.9.0 (Debian 13: UFL 2024, PETSc 3.22). Read in the
+documentation and NOT tested: 0.10 (`interpolation_points` is an attribute) and 0.11 (`Geometry.dofmaps`, a list, takes
+the place of `dofmap`). The `petsc_options_prefix` that `LinearProblem` and `NonlinearProblem` demand from 0.10 on does
+not concern us: solvers are made with petsc4py and named there. The one difference outside is a name that `meshes` needs,
+which opens on nothing of ours: `gmshio`, from 0.10 on `gmsh`, in `meshes/session.py`.
+"""
 
 from __future__ import annotations
 
@@ -49,20 +56,23 @@ def vector_space(domain: dolfinx.mesh.Mesh, order: int) -> fem.FunctionSpace:
 
 def cell_nodes(domain: dolfinx.mesh.Mesh) -> NDArray[np.int32]:
     """Local geometry nodes of this rank's cells, ghosts included, shape (cells, nodes)."""
-    dofmap = domain.geometry.dofmap
-    if isinstance(dofmap, np.ndarray):
-        return dofmap
-    cells = domain.topology.index_map(domain.topology.dim)
-    return dofmap.array.reshape(cells.size_local + cells.num_ghosts, -1)
+    by_kind_of_cell = getattr(domain.geometry, "dofmaps", None)
+    if isinstance(by_kind_of_cell, list):
+        return by_kind_of_cell[0]
+    return _table(domain.geometry.dofmap, domain)
 
 
 def cell_dofs(space: fem.FunctionSpace) -> NDArray[np.int32]:
     """Local nodes of the unknowns of this rank's cells, ghosts included, shape (cells, nodes)."""
-    dofmap = space.dofmap.list
-    if isinstance(dofmap, np.ndarray):
-        return dofmap
-    cells = space.mesh.topology.index_map(space.mesh.topology.dim)
-    return dofmap.array.reshape(cells.size_local + cells.num_ghosts, -1)
+    return _table(space.dofmap.list, space.mesh)
+
+
+def _table(rows: object, domain: dolfinx.mesh.Mesh) -> NDArray[np.int32]:
+    """One row for each cell: an array since 0.7, an adjacency list before."""
+    if isinstance(rows, np.ndarray):
+        return rows
+    cells = domain.topology.index_map(domain.topology.dim)
+    return rows.array.reshape(cells.size_local + cells.num_ghosts, -1)
 
 
 def interpolation_points(space: fem.FunctionSpace) -> NDArray[np.float64]:

@@ -18,7 +18,7 @@ def rigid_beam_on_springs(
     interface: dict[str, Any] | None = None,
 ) -> Built:
     """The scene `winkler_beam` with a rigid beam, 121 springs, and a uniform load [N/m] on top."""
-    tables = load_scene("winkler_beam", [f"time.step={step!r}"]).model_dump(exclude_none=True)
+    tables = load_scene("winkler_beam", [f"time.step={float(step)!r}"]).model_dump(exclude_none=True)
     uniform: dict[str, Any] = {"kind": "boundary", "boundary": "top", "total_force": [0.0, -load]}
     if ramp_over is not None:
         uniform["schedule"] = {"kind": "ramp", "over": ramp_over}

@@ -61,7 +61,7 @@ def test_elastic_beam_is_stable_up_to_the_limit_of_its_consistent_mass(dashpot: 
     unevenness = []
     for share in (0.97, 1.03):
         model = elastic_beam(
-            f"time.step={share * limit!r}",
+            f"time.step={float(share * limit)!r}",
             "structure.loads.0.schedule.over=0.02",
             "structure.rayleigh.stiffness_factor=0.0",
             f"contact.normal_damping={dashpot}",
