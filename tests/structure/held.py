@@ -1,8 +1,11 @@
 """Bodies held by supports: stiffness from the room, supports and solution by scipy."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import ufl
+from dolfinx import fem
 from meshes import StructureMesh
 from petsc4py import PETSc
 from scipy.sparse import csr_matrix
@@ -24,6 +27,7 @@ class HeldBody:
 
     def __init__(self, mesh: StructureMesh, material: PlaneStrain, element: str) -> None:
         body = DiscreteBody(mesh, material.density)
+        self._space = body.space
         place = np.argsort(body.nodes.owned)
         self._order = np.column_stack([2 * place, 2 * place + 1]).ravel()
         self.mesh = mesh
@@ -43,6 +47,15 @@ class HeldBody:
         right = force.ravel() - self.stiffness @ u
         u[free] = spsolve(self.stiffness[free][:, free].tocsc(), right[free])
         return u.reshape(-1, 2)
+
+    def distance(self, displacement: np.ndarray, exact: Callable[..., tuple]) -> float:
+        """L2 norm over the body of displacement (n, 2) less exact(x, y, sin, cos)."""
+        function = fem.Function(self._space)
+        function.x.array[self._order] = displacement.ravel()
+        at = ufl.SpatialCoordinate(self.mesh.domain)
+        off = function - ufl.as_vector(exact(at[0], at[1], ufl.sin, ufl.cos))
+        square = ufl.inner(off, off) * ufl.dx(metadata={"quadrature_degree": 2 * self.mesh.order + 4})
+        return float(np.sqrt(fem.assemble_scalar(fem.form(square))))
 
     def unheld_displacement(self, force: np.ndarray) -> np.ndarray:
         """Displacement (n, 2), up to a rigid motion, under nodal forces in balance: three unknowns are held."""
