@@ -5,11 +5,11 @@ from structure.errors import StructureError
 from structure.free_rigid import FreeRigid
 from structure.loads import BodyForce, BoundaryLoad, PointLoad, Pressure
 from structure.material import PlaneStrain, Rayleigh
-from structure.newmark import Newmark
 from structure.prescribed import PrescribedRigid
 from structure.protocol import Structure
 from structure.schedules import Constant, Ramp, Sine, Table
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
+from structure.schemes import GeneralizedAlpha, HilberHughesTaylor, Newmark
 
 __all__ = [
     "BodyForce",
@@ -17,6 +17,8 @@ __all__ = [
     "Constant",
     "ElasticStructure",
     "FreeRigid",
+    "GeneralizedAlpha",
+    "HilberHughesTaylor",
     "Newmark",
     "PlaneStrain",
     "PointLoad",

@@ -1,51 +1,26 @@
-"""Newmark's scheme for ``M a + C v + K u = f``, solved for the acceleration."""
+"""Newmark's scheme and its dissipative kin for ``M a + C v + K u = f``, solved for the acceleration."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from petsc4py import PETSc
 
-from structure.checks import positive
-from structure.errors import StructureError
+from structure.schemes import Scheme
 from structure.solver import factorise
-
-
-@dataclass(frozen=True, kw_only=True)
-class Newmark:
-    """Newmark's parameters (G's alpha is `beta`, G's delta is `gamma`).
-
-    ``u1 = u + dt v + dt^2 ((1/2 - beta) a + beta a1)``, ``v1 = v + dt ((1 - gamma) a + gamma a1)``.
-    Stable for every step if ``gamma >= 1/2`` and ``beta >= (1/2 + gamma)^2/4`` (G 2.141
-    corrected). (1/4, 1/2), average acceleration, is; (1/6, 1/2), linear acceleration, is stable
-    for omega dt < 3.46 only and needs ``allow_conditional=True``. beta > 0: the step is implicit.
-    """
-
-    beta: float = 0.25
-    gamma: float = 0.5
-    allow_conditional: bool = False
-
-    def __post_init__(self) -> None:
-        positive("beta", self.beta, "Newmark")
-        if not np.isfinite(self.gamma) or self.gamma < 0.5:
-            raise StructureError(f"gamma = {self.gamma!r} feeds energy at every step: use gamma of at least 0.5")
-        least = (0.5 + self.gamma) ** 2 / 4
-        if self.beta < least * (1 - 1e-12) and not self.allow_conditional:
-            raise StructureError(
-                f"beta = {self.beta!r} with gamma = {self.gamma!r} is stable for small steps only: "
-                f"use beta of at least {least:g} or allow_conditional=True"
-            )
 
 
 class NewmarkStepper:
     """State and step of the semi-discrete system on this rank's share of the unknowns.
 
+    With ``x_f = (1 - alpha_f) x1 + alpha_f x`` and ``a_m = (1 - alpha_m) a1 + alpha_m a`` a step solves
+    ``M a_m + C v_f + K u_f = f_f`` for a_m, and ``M + (1 - alpha_f)/(1 - alpha_m) (gamma dt C + beta dt^2 K)`` is
+    factorised once; Newmark has alpha_m = alpha_f = 0.
+
     The arrays `displacement` [m], `velocity` [m/s], `acceleration` [m/s^2], `force` [N/m] and
     `increment` [m] (of the last step) have shape (owned unknowns,) and are the memory of PETSc
-    vectors: write into them, never replace them. ``M + gamma dt C + beta dt^2 K`` is factorised
-    once. `carried` (2,) [m] is a translation near that of the body: K times a translation is zero,
-    so it is taken off before the product, whose round-off would otherwise grow with the path.
+    vectors: write into them, never replace them. `carried` (2,) [m] is a translation near that of the body: K
+    times a translation is zero, so it is taken off before the product, whose round-off would otherwise grow
+    with the path.
     """
 
     def __init__(
@@ -54,12 +29,12 @@ class NewmarkStepper:
         mass: PETSc.Mat,
         stiffness: PETSc.Mat,
         damping: PETSc.Mat | None,
-        scheme: Newmark,
+        scheme: Scheme,
         time_step: float,
     ) -> None:
         self._mass, self._stiffness, self._damping = mass, stiffness, damping
-        dt = time_step
-        self._dt, self._beta, self._gamma = dt, scheme.beta, scheme.gamma
+        self._dt, self._beta, self._gamma = time_step, scheme.beta, scheme.gamma
+        self._alpha_m, self._alpha_f = scheme.alpha_m, scheme.alpha_f
         names = ("displacement", "velocity", "acceleration", "force", "increment", "product")
         arrays = {name: np.zeros(mass.getLocalSize()[0]) for name in names}
         vectors = {name: PETSc.Vec().createWithArray(array, comm=mass.comm) for name, array in arrays.items()}
@@ -74,34 +49,71 @@ class NewmarkStepper:
         self._relative_array, self._relative_pairs = relative, relative.reshape(-1, 2)
         self._relative = PETSc.Vec().createWithArray(relative, comm=mass.comm)
         self._rhs = self._u.duplicate()
-        effective = mass.copy()
-        same = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
-        if damping is not None:
-            effective.axpy(self._gamma * dt, damping, structure=same)
-        effective.axpy(self._beta * dt**2, stiffness, structure=same)
-        self._solve = factorise(effective)
+        self._mean = self._u.duplicate() if scheme.alpha_m else self._a
+        self._loses, self._looks_back = not scheme.conserves, not scheme.conserves or scheme.alpha_f > 0.0
+        if self._looks_back:
+            self._a_before, self._f_before, self._f_change = (self._u.duplicate() for _ in range(3))
+        self._weights()
+        self._solve = factorise(self._effective_matrix())
+
+    def _weights(self) -> None:
+        """Weights of the accelerations in the increments of u and v, old a and mean a_m."""
+        dt, beta, gamma, alpha_m = self._dt, self._beta, self._gamma, self._alpha_m
+        self._u_new, self._v_new = beta * dt**2 / (1.0 - alpha_m), gamma * dt / (1.0 - alpha_m)
+        self._u_old = (0.5 - beta) * dt**2 - alpha_m * self._u_new
+        self._v_old = (1.0 - gamma) * dt - alpha_m * self._v_new
+
+    def _effective_matrix(self) -> PETSc.Mat:
+        effective, same = self._mass.copy(), PETSc.Mat.Structure.SAME_NONZERO_PATTERN
+        late = 1.0 - self._alpha_f
+        if self._damping is not None:
+            effective.axpy(late * self._v_new, self._damping, structure=same)
+        effective.axpy(late * self._u_new, self._stiffness, structure=same)
+        return effective
 
     def start(self) -> None:
         """Acceleration that is in equilibrium with displacement, velocity and force."""
         self._u.copy(self._relative)
-        self._residual()
+        self._residual(self._f)
         if self._rhs.norm() == 0.0:
             self._a.set(0.0)
         else:
             factorise(self._mass)(self._rhs, self._a)
+        self.resume()
+
+    def resume(self) -> None:
+        """Take the arrays, `force` included, for the beginning of the next step."""
+        if self._looks_back:
+            self._f.copy(self._f_before)
 
     def step(self) -> None:
-        """One step to the time at which `force` acts."""
-        dt, u, v, a, d = self._dt, self._u, self._v, self._a, self._d
-        d.axpby(dt, 0.0, v)
-        d.axpy((0.5 - self._beta) * dt**2, a)
-        self._relative.waxpy(1.0, d, u)
-        v.axpy((1.0 - self._gamma) * dt, a)
-        self._residual()
-        self._solve(self._rhs, a)
-        d.axpy(self._beta * dt**2, a)
+        """One step; `force` acts at its end."""
+        u, v, a, d, mean = self._u, self._v, self._a, self._d, self._mean
+        alpha_m, alpha_f = self._alpha_m, self._alpha_f
+        if self._loses:
+            a.copy(self._a_before)
+        d.axpby(self._dt, 0.0, v)
+        d.axpy(self._u_old, a)
+        self._relative.waxpy(1.0 - alpha_f, d, u)
+        v.axpy((1.0 - alpha_f) * self._v_old, a)
+        self._residual(self._force_between())
+        if alpha_f:
+            v.axpy(alpha_f * self._v_old, a)
+        self._solve(self._rhs, mean)
+        d.axpy(self._u_new, mean)
         u.axpy(1.0, d)
-        v.axpy(self._gamma * dt, a)
+        v.axpy(self._v_new, mean)
+        if alpha_m:
+            a.axpby(1.0 / (1.0 - alpha_m), -alpha_m / (1.0 - alpha_m), mean)
+
+    def _force_between(self) -> PETSc.Vec:
+        """``(1 - alpha_f) f1 + alpha_f f``; the force is remembered for the next step."""
+        if not self._looks_back:
+            return self._f
+        self._f_change.waxpy(-1.0, self._f_before, self._f)
+        self._f.copy(self._f_before)
+        self._product.waxpy(-self._alpha_f, self._f_change, self._f)
+        return self._product
 
     def loss_of_step(self) -> float:
         """This rank's share of the damping loss [J/m] of the last step, ``d . C d/dt``.
@@ -113,6 +125,38 @@ class NewmarkStepper:
             return 0.0
         self._damping.mult(self._d, self._product)
         return float(self.increment.dot(self._product_array)) / self._dt
+
+    def scheme_loss_of_step(self) -> float:
+        """This rank's share of what the scheme itself took [J/m] in the last step.
+
+        With x' = x1 - x the equations of one step, taken times u' and written for the mean of both ends,
+        leave beside works by mean forces and the damping loss ``u' . C u'/dt``
+
+            (1/2 - alpha_f) u' . (K u' + C v' - f') + (1 - alpha_m - gamma) u' . M a'
+            + (beta - gamma/2) dt (dt (mean(a) + (gamma - 1/2) a') . M a' - u' . C a')
+
+        which therefore closes the balance of kinetic and strain energy to the accuracy of the solver. Part of it is
+        kept by the scheme and given back, part is lost: a single step may show a gain. It is zero without
+        any product if the scheme conserves.
+        """
+        if not self._loses:
+            return 0.0
+        dt, d, change = self._dt, self._d, self._rhs
+        alpha_m, alpha_f, beta, gamma = self._alpha_m, self._alpha_f, self._beta, self._gamma
+        change.waxpy(-1.0, self._a_before, self._a)
+        new, old, jump = self.acceleration, self._a_before.array_r, change.array_r
+        self._mass.mult(change, self._product)
+        inertia, lag = self._product_array, beta - 0.5 * gamma
+        kept = (new + old) / 2 + (gamma - 0.5) * jump
+        loss = (1.0 - alpha_m - gamma) * self.increment.dot(inertia) + lag * dt**2 * kept.dot(inertia)
+        velocity_change = dt * ((1.0 - gamma) * old + gamma * new)
+        self._stiffness.mult(d, self._product)
+        stretch = self._product_array - self._f_change.array_r
+        loss += (0.5 - alpha_f) * self.increment.dot(stretch)
+        if self._damping is not None:
+            self._damping.mult(d, self._product)
+            loss += self._product_array.dot((0.5 - alpha_f) * velocity_change - lag * dt * jump)
+        return float(loss)
 
     def kinetic(self) -> float:
         """This rank's share of ``v . M v/2`` [J/m]."""
@@ -126,11 +170,11 @@ class NewmarkStepper:
         self._stiffness.mult(self._relative, self._product)
         return float(self._relative_array.dot(self._product_array)) / 2
 
-    def _residual(self) -> None:
+    def _residual(self, force: PETSc.Vec) -> None:
         """``rhs = f - K u - C v`` with u in `_relative`, of which `carried` is taken off."""
         rhs = self._rhs
         self._relative_pairs -= self.carried
         self._stiffness.mult(self._relative, rhs)
         if self._damping is not None:
             self._damping.multAdd(self._v, rhs, rhs)
-        rhs.aypx(-1.0, self._f)
+        rhs.aypx(-1.0, force)
