@@ -64,6 +64,9 @@ def take_balance(model: Model, look: ContactLook | None, start: dict[str, float]
         body = model.structure.energies()
         stored |= {"structure_kinetic": body.kinetic, "structure_strain": body.strain}
         losses["structure_loss_rayleigh"] = body.rayleigh_loss
+        scheme = getattr(model.structure, "scheme", None)  # an elastic structure alone has one
+        if scheme is not None and not scheme.conserves:
+            losses["structure_loss_scheme"] = body.scheme_loss
         works["loads_work"] = body.external_work
         residual += body.boundary_work
     entries = {**stored, **losses, **works}

@@ -18,8 +18,8 @@ from structure.linear import LinearTheory
 from structure.load_vectors import LoadVectors
 from structure.loads import Load
 from structure.material import PlaneStrain, Rayleigh
-from structure.newmark import Newmark
 from structure.results import StructureEnergies, StructureFields, StructurePeaks, cell_kind
+from structure.schemes import Newmark, Scheme
 from structure.solver import factorise
 
 STATE_FIELDS = ("displacement", "velocity", "acceleration")
@@ -36,7 +36,7 @@ class ElasticStructure:
     mesh
         Shape, boundaries, order of the elements.
     material, damping, scheme, loads
-        What it is made of, Rayleigh damping or None, Newmark's parameters, external loads.
+        What it is made of, Rayleigh damping or None, scheme of time integration, external loads.
     time_step : float
         Length [s] of every step.
     element : {"standard", "enhanced"}, optional
@@ -61,14 +61,14 @@ class ElasticStructure:
         material: PlaneStrain,
         time_step: float,
         damping: Rayleigh | None = None,
-        scheme: Newmark = Newmark(),
+        scheme: Scheme = Newmark(),
         loads: Sequence[Load] = (),
         element: ElementName | None = None,
         ledger: bool = True,
     ) -> None:
         checks.positive("time_step", time_step, "s")
         self.mesh, self.comm, self.polyline = mesh, mesh.domain.comm, mesh.outer_polyline
-        self.material, self.damping, self.time_step = material, damping, float(time_step)
+        self.material, self.damping, self.scheme, self.time_step = material, damping, scheme, float(time_step)
         self._body = DiscreteBody(mesh, material.density)
         self.mass = self._body.mass
         self._theory = LinearTheory(
@@ -110,7 +110,7 @@ class ElasticStructure:
         if boundary_force is None:
             boundary_force = np.zeros_like(self.polyline.points)
         self._steps = 0
-        self._loss = self._external_work = self._boundary_work = 0.0
+        self._loss = self._external_work = self._boundary_work = self._scheme_loss = 0.0
         self._external = self._loads.at(0.0, stepper.displacement)
         stepper.force[:] = self._external
         self._force = agreed_force(boundary_force, self.polyline.points.shape, self.comm)
@@ -157,8 +157,11 @@ class ElasticStructure:
             return
         mean = before if self._external is before else (before + self._external) / 2
         shares = (stepper.loss_of_step(), float(mean.dot(stepper.increment)))
-        (loss, work), moved = self._read_boundary(stepper.increment, shares)
+        if not self.scheme.conserves:
+            shares += (stepper.scheme_loss_of_step(),)
+        (loss, work, *by_scheme), moved = self._read_boundary(stepper.increment, shares)
         self._loss += loss
+        self._scheme_loss += sum(by_scheme)
         self._external_work += work
         self._boundary_work += 0.5 * float(np.vdot(old_force + self._force, moved))
 
@@ -179,6 +182,7 @@ class ElasticStructure:
             rayleigh_loss=self._loss,
             external_work=self._external_work,
             boundary_work=self._boundary_work,
+            scheme_loss=self._scheme_loss,
         )
 
     def centroid(self) -> NDArray[np.float64]:
@@ -240,6 +244,8 @@ class ElasticStructure:
         """All that is needed to go on with the same bits, in original node order, on every rank."""
         arrays = {name: getattr(self._stepper, name) for name in STATE_FIELDS}
         sums = [self._loss, self._external_work, self._boundary_work]
+        if not self.scheme.conserves:
+            sums.append(self._scheme_loss)
         return {
             **{name: self._body.nodes.gather(array) for name, array in arrays.items()},
             **self._theory.memory(),
@@ -257,7 +263,8 @@ class ElasticStructure:
             getattr(self._stepper, name)[:] = self._body.nodes.share(given)
         self._theory.recall(state)
         self._force = agreed_force(state["boundary_force"], self.polyline.points.shape, self.comm)
-        self._loss, self._external_work, self._boundary_work = map(float, state["sums"])
+        self._loss, self._external_work, self._boundary_work, *by_scheme = map(float, state["sums"])
+        self._scheme_loss = sum(by_scheme)
         self._steps = int(state["steps"])
         if self._loads.followers:
             self._external = self._body.nodes.share(self._nodal("external_force", state["external_force"]))

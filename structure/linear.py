@@ -10,8 +10,9 @@ from structure.discrete import DiscreteBody
 from structure.elements import ElementName, element_of
 from structure.load_vectors import LoadVectors
 from structure.material import PlaneStrain, Rayleigh
-from structure.newmark import Newmark, NewmarkStepper
+from structure.newmark import NewmarkStepper
 from structure.results import StructurePeaks
+from structure.schemes import Scheme
 from structure.statics import balanced_displacement
 from structure.stress import StressProbe
 
@@ -30,7 +31,7 @@ class LinearTheory:
         *,
         element: ElementName | None,
         damping: Rayleigh | None,
-        scheme: Newmark,
+        scheme: Scheme,
         time_step: float,
     ) -> None:
         self._body, self._material = body, material
@@ -62,11 +63,14 @@ class LinearTheory:
         return balanced_displacement(self._body, self.stiffness, self._material, loads)
 
     def memory(self) -> dict[str, NDArray[np.float64]]:
-        """See `Theory`: nothing."""
-        return {}
+        """See `Theory`: the last force of a scheme that looks back at it."""
+        return {"force": self._body.nodes.gather(self.stepper.force)} if self.stepper.looks_back else {}
 
     def recall(self, state: dict[str, NDArray[np.float64]]) -> None:
-        """See `Theory`: nothing."""
+        """See `Theory`."""
+        if self.stepper.looks_back:
+            self.stepper.force[:] = self._body.nodes.share(state["force"])
+            self.stepper.remember_force()
 
     def _stress_probe(self) -> StressProbe:
         if self._probe is None:

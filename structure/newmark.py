@@ -20,7 +20,7 @@ class NewmarkStepper:
     `increment` [m] (of the last step) have shape (owned unknowns,) and are the memory of PETSc
     vectors: write into them, never replace them. `carried` (2,) [m] is a translation near that of the body: K
     times a translation is zero, so it is taken off before the product, whose round-off would otherwise grow
-    with the path.
+    with the path. `looks_back` tells whether the force at the beginning of a step enters it.
     """
 
     def __init__(
@@ -50,8 +50,8 @@ class NewmarkStepper:
         self._relative = PETSc.Vec().createWithArray(relative, comm=mass.comm)
         self._rhs = self._u.duplicate()
         self._mean = self._u.duplicate() if scheme.alpha_m else self._a
-        self._loses, self._looks_back = not scheme.conserves, not scheme.conserves or scheme.alpha_f > 0.0
-        if self._looks_back:
+        self._loses, self.looks_back = not scheme.conserves, not scheme.conserves or scheme.alpha_f > 0.0
+        if self.looks_back:
             self._a_before, self._f_before, self._f_change = (self._u.duplicate() for _ in range(3))
         self._weights()
         self._solve = factorise(self._effective_matrix())
@@ -79,11 +79,11 @@ class NewmarkStepper:
             self._a.set(0.0)
         else:
             factorise(self._mass)(self._rhs, self._a)
-        self.resume()
+        self.remember_force()
 
-    def resume(self) -> None:
-        """Take the arrays, `force` included, for the beginning of the next step."""
-        if self._looks_back:
+    def remember_force(self) -> None:
+        """Take `force` for that at the beginning of the next step."""
+        if self.looks_back:
             self._f.copy(self._f_before)
 
     def step(self) -> None:
@@ -108,7 +108,7 @@ class NewmarkStepper:
 
     def _force_between(self) -> PETSc.Vec:
         """``(1 - alpha_f) f1 + alpha_f f``; the force is remembered for the next step."""
-        if not self._looks_back:
+        if not self.looks_back:
             return self._f
         self._f_change.waxpy(-1.0, self._f_before, self._f)
         self._f.copy(self._f_before)

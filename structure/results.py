@@ -10,10 +10,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, kw_only=True)
 class StructureEnergies:
-    """Energies [J/m]; ``kinetic + strain + rayleigh_loss - external_work - boundary_work`` stays.
-
-    With Newmark's (1/4, 1/2) and for rigid bodies this holds to round-off; other parameters add
-    or take energy.
+    """Energies [J/m]; ``kinetic + strain + rayleigh_loss + scheme_loss - external_work - boundary_work`` stays.
 
     Attributes
     ----------
@@ -25,6 +22,9 @@ class StructureEnergies:
         Trapezoidal work of the loads since the start (of the drive, for a prescribed motion).
     boundary_work
         Trapezoidal work of the nodal forces given to `advance` since the start.
+    scheme_loss
+        Taken by the scheme of time integration since the start (`NewmarkStepper.scheme_loss_of_step`); zero
+        where it conserves, as Newmark's (1/4, 1/2) does.
     """
 
     kinetic: float
@@ -32,6 +32,7 @@ class StructureEnergies:
     rayleigh_loss: float
     external_work: float
     boundary_work: float
+    scheme_loss: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

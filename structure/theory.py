@@ -43,6 +43,10 @@ class Stepper(Protocol):
         """This rank's share of the damping loss [J/m] of the last step."""
         ...
 
+    def scheme_loss_of_step(self) -> float:
+        """This rank's share of what the scheme took [J/m] in the last step; asked for where it does not conserve."""
+        ...
+
     def kinetic(self) -> float:
         """This rank's share of the kinetic energy [J/m]."""
         ...
