@@ -21,6 +21,7 @@ from coupled.loads import load_of
 from coupled.model import Model
 from coupled.scene import Beam, RowUnder, Scene, SettledGrains
 from coupled.scene.materials import GRAINS, STRUCTURE, materials
+from coupled.scene.structure import Structure as StructureTable
 from coupled.step import damping_of, with_step
 from particles.beds import drop_height_on, lattice
 from particles.timestep import require_stable
@@ -170,13 +171,21 @@ def _structure(scene: Scene, mesh: meshes.StructureMesh) -> fem.Structure:
         damping=None
         if table.rayleigh is None
         else fem.Rayleigh(mass_factor=table.rayleigh.mass_factor, stiffness_factor=table.rayleigh.stiffness_factor),
-        scheme=fem.Newmark(beta=table.newmark.beta, gamma=table.newmark.gamma),
+        scheme=_scheme(table),
         loads=loads,
         element=table.element,
     )
     if table.initial is not None:
         body.release_from_mode(table.initial.mode, table.initial.amplitude)
     return body
+
+
+def _scheme(table: StructureTable) -> fem.Scheme:
+    if table.generalised_alpha is not None:
+        return fem.GeneralizedAlpha(spectral_radius=table.generalised_alpha.spectral_radius)
+    if table.hht is not None:
+        return fem.HilberHughesTaylor(alpha=table.hht.alpha)
+    return fem.Newmark(beta=table.newmark.beta, gamma=table.newmark.gamma)
 
 
 def _particles(

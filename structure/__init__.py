@@ -9,7 +9,7 @@ from structure.prescribed import PrescribedRigid
 from structure.protocol import Structure
 from structure.schedules import Constant, Ramp, Sine, Table
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
-from structure.schemes import GeneralizedAlpha, HilberHughesTaylor, Newmark
+from structure.schemes import GeneralizedAlpha, HilberHughesTaylor, Newmark, Scheme
 
 __all__ = [
     "BodyForce",
@@ -26,6 +26,7 @@ __all__ = [
     "PrescribedRigid",
     "Ramp",
     "Rayleigh",
+    "Scheme",
     "Structure",
     "Sine",
     "StructureEnergies",

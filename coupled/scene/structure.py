@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from coupled.scene.loads import Load
 from coupled.scene.refusal import refusal
+from coupled.scene.schemes import SCHEMES, AlphaMethod, GeneralisedAlpha, Newmark
 from coupled.scene.shape import Beam, Shape, Tube
 from coupled.scene.types import Count, NonNegative, Number, Positive, Table
 
@@ -27,13 +28,6 @@ class Rayleigh(Table):
 
     mass_factor: NonNegative = Field(0.0, description="c_a [1/s]")
     stiffness_factor: NonNegative = Field(0.0, description="c_b [s]")
-
-
-class Newmark(Table):
-    """Parameters of Newmark's scheme (G calls them alpha and delta)."""
-
-    beta: Positive = Field(0.25, description="beta [-]")
-    gamma: Positive = Field(0.5, description="gamma [-]")
 
 
 class Path(Table):
@@ -78,7 +72,9 @@ class Structure(Table):
     beam: Beam | None = Field(None, description="a rectangle")
     placement: Placement = Field(default_factory=Placement, description="start of the centroid")
     rayleigh: Rayleigh | None = Field(None, description="damping of the material")
-    newmark: Newmark | None = Field(None, description="parameters of the time integration")
+    newmark: Newmark | None = Field(None, description="time integration by Newmark, the default")
+    generalised_alpha: GeneralisedAlpha | None = Field(None, description="time integration by generalised alpha")
+    hht: AlphaMethod | None = Field(None, description="time integration by the alpha method")
     loads: tuple[Load, ...] = Field((), description="external loads")
     path: Path | None = Field(None, description="prescribed motion of a rigid structure")
     initial: Initial | None = Field(None, description="initial deformation")
@@ -88,7 +84,9 @@ class Structure(Table):
     def _write_numerics(cls, data: Any) -> Any:
         """Write element and scheme of an elastic structure when they are not given."""
         if isinstance(data, dict) and data.get("kind") == "elastic":
-            return {"element": _usual_element(data.get("tube") or data.get("beam")), "newmark": {}, **data}
+            chosen = any(data.get(name) is not None for name in SCHEMES)
+            scheme = {} if chosen else {"newmark": {}}
+            return {"element": _usual_element(data.get("tube") or data.get("beam")), **scheme, **data}
         return data
 
     @model_validator(mode="after")

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Literal
 
 from coupled.scene.refusal import Plain, missing, refusal
 from coupled.scene.rules.loads import check_loads
-from coupled.scene.structure import Newmark, Structure
+from coupled.scene.schemes import SCHEMES, Newmark
+from coupled.scene.structure import Structure
 
 if TYPE_CHECKING:
     from coupled.scene.scene import Scene
@@ -18,7 +19,7 @@ _NEEDED: dict[_Kind, tuple[str, ...]] = {
     "free_rigid": ("density",),
 }
 _ALLOWED: dict[_Kind, tuple[str, ...]] = {
-    "elastic": (*_NEEDED["elastic"], "rayleigh", "newmark", "loads", "initial"),
+    "elastic": (*_NEEDED["elastic"], "rayleigh", *SCHEMES, "loads", "initial"),
     "rigid": ("path", "density"),
     "free_rigid": ("density", "loads"),
 }
@@ -33,6 +34,7 @@ def check_structure(scene: Scene) -> None:
     _check_kind(structure)
     _check_shape(structure)
     check_loads(structure)
+    _check_one_scheme(structure)
     if structure.newmark is not None:
         _check_newmark(structure.newmark)
     if structure.path is not None:
@@ -71,12 +73,18 @@ def _check_shape(structure: Structure) -> None:
         )
 
 
+def _check_one_scheme(structure: Structure) -> None:
+    given = [name for name in SCHEMES if getattr(structure, name) is not None]
+    if len(given) > 1:
+        raise refusal(f"structure.{given[1]}", {}, f"is given together with structure.{given[0]}; keep one of them")
+
+
 def _check_newmark(newmark: Newmark) -> None:
     beta, gamma = newmark.beta, newmark.gamma
     if gamma < 0.5:
         raise refusal("structure.newmark.gamma", gamma, "is unstable; give at least 0.5")
     least = (0.5 + gamma) ** 2 / 4
-    if beta < least:
+    if beta < least * (1.0 - 1e-12):  # (1.1)^2/4 is above 0.3025 by round-off
         raise refusal(
             "structure.newmark.beta",
             beta,
