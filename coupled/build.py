@@ -15,6 +15,7 @@ import meshes
 import particles as dem
 import structure as fem
 from coupled.errors import LeitoError
+from coupled.exchange_limit import exchange_limit
 from coupled.glued import GluedGrains
 from coupled.laws import contact_law, interface_spring
 from coupled.loads import load_of
@@ -26,9 +27,6 @@ from coupled.step import damping_of, with_step
 from particles.beds import drop_height_on, lattice
 from particles.timestep import require_stable
 
-# Measured on the real code (tests/coupled/test_exchange.py): with every glued grain on a fixed partner the
-# predicted exchange is stable up to r = 2, with sub-cycling up to 1.0 to 1.6, by the dashpots.
-STABLE_RATIO, STABLE_RATIO_SUBCYCLED = 2.0, 1.0
 WARNED_SHARE = 0.95  # of the stable ratio
 
 Saved = Mapping[str, NDArray[Any]]
@@ -247,7 +245,8 @@ def _row_places(scene: Scene, row: Any, glued: GluedGrains | None) -> NDArray[np
 
 def stable_ratio(scene: Scene) -> float:
     """The stiffness ratio up to which the exchange of a scene is stable on fixed partners."""
-    return STABLE_RATIO if scene.interface.substeps == 1 else STABLE_RATIO_SUBCYCLED
+    scheme = _scheme(scene.structure) if scene.structure.kind == "elastic" else fem.Newmark()
+    return exchange_limit(scheme, scene.interface.substeps)
 
 
 def _stiffness_ratio(scene: Scene, model: Model, contact: dem.Contact | None, comm: MPI.Intracomm) -> float:
@@ -261,7 +260,7 @@ def _stiffness_ratio(scene: Scene, model: Model, contact: dem.Contact | None, co
     limit = scene.interface.largest_stiffness_ratio or stable_ratio(scene)
     if ratio > limit:
         raise LeitoError(
-            f"stiffness ratio r = {ratio:.3g} of the coupling is above {limit:g}, where the exchange is "
+            f"stiffness ratio r = {ratio:.3g} of the coupling is above {limit:.4g}, where the exchange is "
             f"unstable: take time.step at most {scene.time.step * limit / ratio:.2g} s, fewer "
             "interface.substeps, or raise interface.largest_stiffness_ratio knowingly"
         )

@@ -27,7 +27,7 @@ def before(built: Built, limits: StepLimits | None = None) -> list[str]:
     if scene.interface is not None and built.stiffness_ratio > WARNED_SHARE * stable_ratio(scene):
         said.append(
             f"stiffness ratio r = {built.stiffness_ratio:.2f} of the coupling is close to or above "
-            f"{stable_ratio(scene):g}, the limit on fixed partners: take a smaller time.step"
+            f"{stable_ratio(scene):.4g}, the limit on fixed partners: take a smaller time.step"
         )
     if scene.interface is not None and scene.interface.exchange == "lagged" and built.stiffness_ratio > 0.0:
         said.append(

@@ -94,7 +94,7 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
     if summary["stiffness_ratio_r"]:
         lines.append(
             f"  stiffness ratio r        {summary['stiffness_ratio_r']:12.3g}       stable up to "
-            f"{summary['stable_ratio']:g} on fixed partners"
+            f"{summary['stable_ratio']:.4g} on fixed partners"
         )
     parts = ", ".join(f"{name} {seconds:.1f}" for name, seconds in summary["wall_seconds_by_part"].items() if seconds)
     lines.append(f"  wall time [s]            {parts}")

@@ -9,8 +9,10 @@ import pytest
 from independent_beam import IndependentBeam
 from small_models import discs_on_free_beam, rigid_beam_on_springs
 
+import structure as fem
 from coupled.build import build
 from coupled.errors import LeitoError
+from coupled.exchange_limit import exchange_limit
 from coupled.model import Model
 from coupled.scene import load_scene
 
@@ -150,3 +152,29 @@ def test_a_structure_that_starts_in_contact_starts_accelerated() -> None:
 def test_two_discs_cannot_share_a_centre() -> None:
     with pytest.raises(ValueError, match="grains 0 and 1 have the same centre"):
         discs_on_free_beam([[0.0, 0.5, 0.0, 0.0, 0.0], [0.0, 0.5, 0.0, 0.0, 0.0]], step=1e-6)
+
+
+def test_limit_of_a_dissipative_scheme_is_safe_and_that_of_newmark_is_not() -> None:
+    """A soft beam without any damping, whose modes lie where generalised alpha lags behind the predicted places."""
+    limit = exchange_limit(fem.GeneralizedAlpha(spectral_radius=0.9))
+    assert 0.5 < limit < 1.0
+    soft = ("structure.youngs_modulus=7e8", "structure.rayleigh.stiffness_factor=0.0", "contact.normal_damping=0.0")
+    at_1e_5 = build(load_scene("winkler_beam", ["time.step=1e-5", *soft])).stiffness_ratio
+    unevenness = []
+    for ratio in (0.95 * limit, 1.9):
+        model = elastic_beam(
+            f"time.step={1e-5 * np.sqrt(ratio / at_1e_5)!r}",
+            "structure.generalised_alpha={spectral_radius=0.9}",
+            "structure.loads.0.ramp_time=0.02",
+            "interface.largest_stiffness_ratio=10.0",
+            *soft,
+        )
+        model.advance(1500)
+        unevenness.append(np.ptp(model.glued_force[:, 1]))
+    # At rest the forces range over 103 N of 1000 N; beyond the limit springs open.
+    assert unevenness[0] < 150.0 and unevenness[1] > 1000.0
+
+
+def test_limit_of_schemes_that_conserve_is_two_and_half_of_it_with_substeps() -> None:
+    for scheme in (fem.Newmark(), fem.GeneralizedAlpha(spectral_radius=1.0)):
+        assert (exchange_limit(scheme), exchange_limit(scheme, 5)) == (2.0, 1.0)
