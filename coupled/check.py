@@ -125,7 +125,11 @@ def _structure_rows(scene: Scene, built: Built) -> list[Row]:
         glued = built.model.glued
         rows += [
             ("interface", "glued grains, diameter", f"{len(glued)}, {2 * glued.radius:.4g} m"),
-            ("interface", f"stiffness ratio r (stable up to {stable_ratio(scene):.4g})", f"{built.stiffness_ratio:.3g}"),
+            (
+                "interface",
+                f"stiffness ratio r (stable up to {stable_ratio(scene):.4g})",
+                f"{built.stiffness_ratio:.3g}",
+            ),
         ]
     return rows
 

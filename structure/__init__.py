@@ -7,8 +7,8 @@ from structure.loads import BodyForce, BoundaryLoad, PointLoad, Pressure
 from structure.material import PlaneStrain, Rayleigh
 from structure.prescribed import PrescribedRigid
 from structure.protocol import Structure
-from structure.schedules import Constant, Ramp, Sine, Table
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
+from structure.schedules import Constant, Ramp, Sine, Table
 from structure.schemes import GeneralizedAlpha, HilberHughesTaylor, Newmark, Scheme
 
 __all__ = [

@@ -8,10 +8,10 @@ from coupled.scene.interface import Interface, Row, RowUnder
 from coupled.scene.load import dump_scene, load_scene
 from coupled.scene.output import Output, Time
 from coupled.scene.scene import Scene
+from coupled.scene.schemes import Newmark
 from coupled.scene.shape import Beam, Tube
 from coupled.scene.structure import (
     Initial,
-    Newmark,
     Path,
     Placement,
     Rayleigh,

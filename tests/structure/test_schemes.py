@@ -11,6 +11,7 @@ from structure import (
     HilberHughesTaylor,
     Newmark,
     PlaneStrain,
+    Ramp,
     Rayleigh,
     StructureError,
 )
@@ -28,7 +29,7 @@ SECOND_ORDER = LOSING[:-1]
 
 
 def amplification(scheme: Scheme, omega_dt: float, damping_ratio: float = 0.0) -> np.ndarray:
-    """From (u, dt v, dt^2 a) to the same a step later, for one free mode: the scheme's equations solved as they stand."""
+    """From (u, dt v, dt^2 a) to the same a step later, for one free mode, from the equations of the scheme."""
     k, c = omega_dt**2, 2 * damping_ratio * omega_dt
     am, af, b, g = scheme.alpha_m, scheme.alpha_f, scheme.beta, scheme.gamma
     new = np.array([[1, 0, -b], [0, 1, -g], [k * (1 - af), c * (1 - af), 1 - am]])
@@ -115,7 +116,7 @@ def test_error_is_of_order_two(scheme: Scheme, soft: PlaneStrain) -> None:
             time_step=dt,
             scheme=scheme,
             damping=Rayleigh(mass_factor=0.02 * omega, stiffness_factor=0.02 / omega),
-            loads=[BoundaryLoad(boundary="top", total_force=(1.0, -3.0), ramp_time=2 * end)],
+            loads=[BoundaryLoad(boundary="top", total_force=(1.0, -3.0), schedule=Ramp(over=2 * end))],
         )
         for step in range(steps):
             body.advance(np.sin(1.3 * omega * dt * (step + 1)) ** 2 * pattern)
@@ -135,8 +136,8 @@ def test_ledger_closes_with_the_loss_of_the_scheme(scheme: Scheme, soft: PlaneSt
         scheme=scheme,
         damping=Rayleigh(mass_factor=0.5, stiffness_factor=2e-5),
         loads=[
-            BoundaryLoad(boundary="loaded_arc", total_force=(3.0, -10.0), ramp_time=0.02),
-            BodyForce(acceleration=(0.0, -9.81), ramp_time=0.03),
+            BoundaryLoad(boundary="loaded_arc", total_force=(3.0, -10.0), schedule=Ramp(over=0.02)),
+            BodyForce(acceleration=(0.0, -9.81), schedule=Ramp(over=0.03)),
         ],
     )
     rng = np.random.default_rng(7)
@@ -197,7 +198,7 @@ def test_resumed_run_has_the_same_bits(scheme: Scheme, soft: PlaneStrain) -> Non
     tube = meshes.tube(outer_radius=0.05, inner_radius=0.04)
 
     def build() -> ElasticStructure:
-        load = BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -10.0), ramp_time=0.01)
+        load = BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -10.0), schedule=Ramp(over=0.01))
         damping = Rayleigh(mass_factor=0.1, stiffness_factor=1e-4)
         return ElasticStructure(tube, material=soft, time_step=1e-4, damping=damping, loads=[load], scheme=scheme)
 
