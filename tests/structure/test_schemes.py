@@ -59,7 +59,7 @@ def swing(scheme: Scheme, material: PlaneStrain, omega_dt: float, steps: int) ->
     return np.array(rows)
 
 
-@pytest.mark.parametrize("radius", [0.0, 0.3, 0.5, 0.8, 1.0])
+@pytest.mark.parametrize("radius", [0.0, 0.3, 0.5, 0.8])
 def test_stiff_modes_shrink_by_the_chosen_radius(radius: float, soft: PlaneStrain) -> None:
     rows = swing(GeneralizedAlpha(spectral_radius=radius), soft, 1e4, 6)
     # Each part of its own size: the three grow apart as the mode gets stiffer.
