@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_matrix, csr_matrix, diags
+from independent_body import IndependentBody
+from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import eigsh, splu
 
 
@@ -17,21 +18,7 @@ class Rest:
     slips: np.ndarray
 
 
-def quadrilateral_stiffness(young: float, poisson: float, width: float, height: float) -> np.ndarray:
-    """Stiffness (8, 8) of a bilinear rectangle in plane strain, 2 x 2 Gauss points (exact)."""
-    lam, mu = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / 2 / (1 + poisson)
-    elasticity = np.array([[lam + 2 * mu, lam, 0], [lam, lam + 2 * mu, 0], [0, 0, mu]])
-    sign_x, sign_y = np.array([-1, 1, 1, -1]), np.array([-1, -1, 1, 1])
-    stiffness = np.zeros((8, 8))
-    for x, y in np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) / np.sqrt(3):
-        strain = np.zeros((3, 8))
-        strain[0, ::2] = strain[2, 1::2] = sign_x * (1 + sign_y * y) / (2 * width)
-        strain[1, 1::2] = strain[2, ::2] = sign_y * (1 + sign_x * x) / (2 * height)
-        stiffness += strain.T @ elasticity @ strain * width * height / 4
-    return stiffness
-
-
-class IndependentBeam:
+class IndependentBeam(IndependentBody):
     """Rectangle of ``along x across`` bilinear cells from (0, 0), lower face on springs.
 
     Nodes are numbered row by row from below; unknowns are (x, y) of each node.
@@ -42,28 +29,14 @@ class IndependentBeam:
         column, row = (a.ravel() for a in np.meshgrid(np.arange(along), np.arange(across)))
         first = row * (along + 1) + column
         corners = np.stack([first, first + 1, first + along + 2, first + along + 1], axis=1)
-        unknowns = (2 * corners[:, :, None] + np.arange(2)).reshape(-1, 8)
-        cell = quadrilateral_stiffness(young, poisson, length / along, height / across)
-        self._unknowns, self.size = unknowns, 2 * (along + 1) * (across + 1)
-        self.stiffness = self._assemble(cell)
-
-    def mass(self, density: float) -> csr_matrix:
-        """Consistent mass: the product of the masses (2, 1; 1, 2)/6 of a linear line along x and y."""
-        share = np.array([[4, 2, 1, 2], [2, 4, 2, 1], [1, 2, 4, 2], [2, 1, 2, 4]]) / 36
-        area = self.length * self.height / (self.along * self.across)
-        return self._assemble(density * area * np.kron(share, np.eye(2)))
+        x, y = np.meshgrid(np.linspace(0.0, length, along + 1), np.linspace(0.0, height, across + 1))
+        super().__init__(np.column_stack([x.ravel(), y.ravel()]), corners, young=young, poisson=poisson)
 
     def fastest_on_springs(self, springs: np.ndarray, stiffness: float, density: float) -> float:
         """Largest omega^2 [1/s^2] of the mass on vertical `springs` [N/m], without its own stiffness."""
         below = self._at_springs(springs, 1)
         pulled = (stiffness * below.T @ below).tocsc()
         return float(eigsh(pulled, 1, self.mass(density).tocsc(), return_eigenvectors=False)[0])
-
-    def _assemble(self, cell: np.ndarray) -> csr_matrix:
-        unknowns = self._unknowns
-        places = (np.repeat(unknowns, 8, axis=1).ravel(), np.tile(unknowns, 8).ravel())
-        values = np.tile(cell.ravel(), len(unknowns))
-        return coo_matrix((values, places), shape=(self.size, self.size)).tocsr()
 
     def uniform(self, total: float) -> np.ndarray:
         """Nodal forces of a vertical force `total` [N/m] spread evenly over the upper face."""
@@ -123,11 +96,12 @@ class IndependentBeam:
                 return Rest(moved, push, held - sideways * slide, slips & closed)
         raise AssertionError("the set of closed springs does not settle")
 
+    def facet_of(self, abscissae: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """First and second node of the facet of the lower face at `abscissae` [m], and the share of the second."""
+        place = abscissae * self.along / self.length
+        node = np.minimum(np.floor(place + 1e-9).astype(int), self.along - 1)
+        return node, node + 1, place - node
+
     def _at_springs(self, springs: np.ndarray, component: int) -> csr_matrix:
         """Displacement component of the lower face at `springs` from all unknowns, linear in a facet."""
-        place = springs * self.along / self.length
-        node = np.minimum(np.floor(place + 1e-9).astype(int), self.along - 1)
-        share = place - node
-        row = np.arange(len(springs))
-        values, columns = np.append(1 - share, share), 2 * np.append(node, node + 1) + component
-        return csr_matrix((values, (np.append(row, row), columns)), shape=(len(springs), self.size))
+        return self.between(*self.facet_of(springs))[component::2]
