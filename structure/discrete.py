@@ -25,6 +25,9 @@ class DiscreteBody:
         Consistent mass [kg/m].
     mass, centroid, inertia
         Mass [kg/m], reference centroid (2,) [m], polar moment of inertia about it [kg m].
+    measures : (4, owned unknowns)
+        M times the translations along x and y, times J R and times R: R is the reference position
+        relative to the centroid [m], J a quarter turn counter-clockwise.
     """
 
     def __init__(self, mesh: StructureMesh, density: float) -> None:
@@ -44,11 +47,19 @@ class DiscreteBody:
         radial = self.weigh(arm.ravel())
         turning = self.weigh(np.column_stack([-arm[:, 1], arm[:, 0]]).ravel())
         self.inertia = self.total(radial @ arm.ravel())
-        self._measures = np.array([along_x, along_y, turning, radial])
+        self.measures = np.array([along_x, along_y, turning, radial])
 
     def total(self, share: float) -> float:
         """Sum over the ranks."""
-        return float(self.comm.allreduce(share))
+        return float(share if self.comm.size == 1 else self.comm.allreduce(share))
+
+    def totals(self, shares: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Sums over the ranks, one by one; a single rank is not asked."""
+        if self.comm.size == 1:
+            return shares
+        sums = np.empty_like(shares)
+        self.comm.Allreduce(shares, sums)
+        return sums
 
     def weigh(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """``M values`` for this rank's flat values."""
@@ -59,11 +70,11 @@ class DiscreteBody:
 
     def momentum(self, velocity: NDArray[np.float64]) -> NDArray[np.float64]:
         """Linear momentum (2,) [kg/s] of flat nodal velocities [m/s]."""
-        return self.comm.allreduce(self._measures[:2] @ velocity)
+        return self.totals(self.measures[:2] @ velocity)
 
     def centroid_now(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
         """Centroid (2,) [m] of the displaced body."""
-        return self.centroid + self.comm.allreduce(self._measures[:2] @ displacement) / self.mass
+        return self.centroid + self.totals(self.measures[:2] @ displacement) / self.mass
 
     def mean_rotation(self, displacement: NDArray[np.float64]) -> float:
         """Rotation [rad] of the rigid motion that fits best, weighted by mass.
@@ -71,5 +82,5 @@ class DiscreteBody:
         ``atan2(int rho R x r, int rho R . r)``, R and r the reference and present positions
         relative to the centroid: exact for a rigid motion of any size; within (-pi, pi].
         """
-        cross, along = self.comm.allreduce(self._measures[2:] @ displacement)
+        cross, along = self.totals(self.measures[2:] @ displacement)
         return math.atan2(cross, self.inertia + along)

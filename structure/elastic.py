@@ -13,14 +13,15 @@ from structure import checks, modes
 from structure.boundary import agreed_force, boundary_exchange
 from structure.discrete import DiscreteBody
 from structure.elements import ElementName
-from structure.errors import StructureError
-from structure.linear import LinearTheory
+from structure.errors import StepError, StructureError
 from structure.load_vectors import LoadVectors
 from structure.loads import Load
 from structure.material import PlaneStrain, Rayleigh
 from structure.results import StructureEnergies, StructureFields, StructurePeaks, cell_kind
 from structure.schemes import Newmark, Scheme
 from structure.solver import factorise
+from structure.theories import theory_of
+from structure.theory import TheoryName
 
 STATE_FIELDS = ("displacement", "velocity", "acceleration")
 
@@ -64,6 +65,7 @@ class ElasticStructure:
         scheme: Scheme = Newmark(),
         loads: Sequence[Load] = (),
         element: ElementName | None = None,
+        theory: TheoryName = "linear",
         ledger: bool = True,
     ) -> None:
         checks.positive("time_step", time_step, "s")
@@ -71,8 +73,8 @@ class ElasticStructure:
         self.material, self.damping, self.scheme, self.time_step = material, damping, scheme, float(time_step)
         self._body = DiscreteBody(mesh, material.density)
         self.mass = self._body.mass
-        self._theory = LinearTheory(
-            self._body, material, element=element, damping=damping, scheme=scheme, time_step=self.time_step
+        self._theory = theory_of(
+            theory, self._body, material, element=element, damping=damping, scheme=scheme, time_step=self.time_step
         )
         self._stepper = self._theory.stepper
         self._exchange = boundary_exchange(self._body.nodes, mesh.outer_nodes, self.comm)
@@ -151,7 +153,10 @@ class ElasticStructure:
         stepper.force[:] = self._external
         self._force = agreed_force(boundary_force, self.polyline.points.shape, self.comm)
         self._exchange.add(self._force, stepper.force)
-        stepper.step()
+        try:
+            stepper.step()
+        except StepError as failed:
+            raise StepError(f"t = {self.time:g} s: {failed}") from None
         if not self._ledger:
             self._read_boundary()
             return
@@ -261,7 +266,6 @@ class ElasticStructure:
         for name in STATE_FIELDS:
             given = self._nodal(name, state[name])
             getattr(self._stepper, name)[:] = self._body.nodes.share(given)
-        self._theory.recall(state)
         self._force = agreed_force(state["boundary_force"], self.polyline.points.shape, self.comm)
         self._loss, self._external_work, self._boundary_work, *by_scheme = map(float, state["sums"])
         self._scheme_loss = sum(by_scheme)
@@ -270,6 +274,9 @@ class ElasticStructure:
             self._external = self._body.nodes.share(self._nodal("external_force", state["external_force"]))
         else:
             self._external = self._loads.at(self.time, self._stepper.displacement)
+        self._stepper.force[:] = self._external
+        self._exchange.add(self._force, self._stepper.force)
+        self._theory.recall(state)
         self._read_boundary()
 
     def _predictor(self) -> NDArray[np.float64]:

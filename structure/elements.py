@@ -15,6 +15,7 @@ from structure.discrete import DiscreteBody
 from structure.enhanced import EnhancedCells
 from structure.errors import StructureError
 from structure.material import PlaneStrain
+from structure.nodes import fill
 
 ElementName = Literal["standard", "enhanced"]
 Strain = Callable[[NDArray[np.float64]], NDArray[np.float64]]
@@ -63,7 +64,7 @@ class StandardElement:
         cells = np.arange(domain.topology.index_map(2).size_local, dtype=np.int32)
 
         def strain(displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-            _fill(function, displacement)
+            fill(function, displacement)
             return compat.evaluate(expression, domain, cells).reshape(len(cells), -1, 3)
 
         return strain
@@ -105,7 +106,7 @@ class EnhancedElement:
         operator[:, :, 2] /= 2.0
 
         def strain(displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-            _fill(function, displacement)
+            fill(function, displacement)
             local = function.x.array.reshape(-1, 2)[self._nodes].reshape(-1, 1, 8, 1)
             return (operator @ local)[..., 0]
 
@@ -134,9 +135,3 @@ def element_of(name: ElementName | None, body: DiscreteBody, material: PlaneStra
     if name not in ELEMENTS:
         raise StructureError(f"element = {name!r} is not known: use one of {', '.join(ELEMENTS)}")
     return ELEMENTS[name](body, material)
-
-
-def _fill(function: fem.Function, displacement: NDArray[np.float64]) -> None:
-    """Owned values into a function, ghosts from their owners."""
-    function.x.array[: len(displacement)] = displacement
-    function.x.scatter_forward()

@@ -54,3 +54,9 @@ class NodeMap:
         np.add.at(sums[:, components], self.cells, 1.0)
         sums = self._comm.allreduce(sums)
         return sums[:, :components] / sums[:, components:]
+
+
+def fill(function: fem.Function, values: NDArray[np.float64]) -> None:
+    """Owned values into a function, ghosts from their owners."""
+    function.x.array[: len(values)] = values
+    function.x.scatter_forward()

@@ -37,10 +37,24 @@ class StructureEnergies:
 
 @dataclass(frozen=True, kw_only=True)
 class StructurePeaks:
-    """Largest over all Gauss points: von Mises stress [Pa], magnitude of principal strain."""
+    """Extremes over all Gauss points.
+
+    Attributes
+    ----------
+    von_mises
+        Largest von Mises stress [Pa].
+    strain
+        Largest magnitude of a principal strain, by the measure of the theory.
+    local_rotation
+        Largest rotation [rad] of the material against the frame of the body, where the theory has one.
+    least_stretch
+        Smallest principal stretch, where strain may be large.
+    """
 
     von_mises: float
     strain: float
+    local_rotation: float | None = None
+    least_stretch: float | None = None
 
 
 STRESS_AND_STRAIN = (
