@@ -11,7 +11,7 @@ from structure.errors import StructureError
 from structure.large_strain import LargeStrainTheory
 from structure.linear import LinearTheory
 from structure.material import PlaneStrain, Rayleigh
-from structure.newmark import Newmark
+from structure.schemes import Newmark, Scheme
 from structure.theory import Theory, TheoryName
 
 
@@ -22,7 +22,7 @@ def theory_of(
     *,
     element: ElementName | None,
     damping: Rayleigh | None,
-    scheme: Newmark,
+    scheme: Scheme,
     time_step: float,
 ) -> Theory:
     """Build the theory that is asked for.
