@@ -63,15 +63,24 @@ KINDS = {
 }
 
 
-def determinants(nodes: NDArray[np.float64], kind: Kind) -> NDArray[np.float64]:
-    """Determinant of the map from the reference cell, cells (m, k, 2) at a lattice of places (m, p)."""
+def shapes_at(kind: Kind, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Shape functions (p, k) and their slopes (p, k, 2) at places (p, 2) of the reference cell.
+
+    The reference cell is the unit square, or the triangle with the corners (0, 0), (1, 0), (0, 1).
+    """
     powers = np.array(kind.powers)
     to_shapes = np.linalg.inv(np.prod(np.array(kind.nodes)[:, None] ** powers, axis=2))
-    steps = np.linspace(0.0, 1.0, 2 * kind.order + 1)
-    places = np.array([(s, t) for s in steps for t in steps if kind.cell == "quadrilateral" or s + t < 1.0 + 1e-9])
     slopes = []
     for axis in (0, 1):
         lowered = np.maximum(powers - np.eye(2, dtype=int)[axis], 0)
         slopes.append((powers[:, axis] * np.prod(places[:, None] ** lowered, axis=2)) @ to_shapes)
-    (a, c), (b, d) = ((slope @ nodes).transpose(2, 0, 1) for slope in slopes)
+    return np.prod(places[:, None] ** powers, axis=2) @ to_shapes, np.stack(slopes, axis=2)
+
+
+def determinants(nodes: NDArray[np.float64], kind: Kind) -> NDArray[np.float64]:
+    """Determinant of the map from the reference cell, cells (m, k, 2) at a lattice of places (m, p)."""
+    steps = np.linspace(0.0, 1.0, 2 * kind.order + 1)
+    places = np.array([(s, t) for s in steps for t in steps if kind.cell == "quadrilateral" or s + t < 1.0 + 1e-9])
+    _, slopes = shapes_at(kind, places)
+    (a, c), (b, d) = ((slopes[:, :, axis] @ nodes).transpose(2, 0, 1) for axis in (0, 1))
     return a * d - b * c

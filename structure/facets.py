@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from meshes.kinds import KINDS
 from structure import compat
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
@@ -37,7 +38,7 @@ def boundary_facets(body: DiscreteBody, name: str) -> NDArray[np.int64]:
     topology.create_connectivity(1, 2)
     topology.create_connectivity(2, 1)
     cells_of, facets_of = topology.connectivity(1, 2), topology.connectivity(2, 1)
-    closures = compat.facet_nodes(body.space, 3 if mesh.cell == "triangle" else 4)
+    closures = compat.facet_nodes(body.space, len(KINDS[mesh.cells.shape[1]].sides))
     rows = []
     for facet in mesh.facet_tags.indices[np.isin(mesh.facet_tags.values, tags)]:
         cell = cells_of.links(facet)[0]
@@ -57,3 +58,11 @@ def _solid_on_left(points: NDArray[np.float64], cell: NDArray[np.int64], side: N
     if along[0] * inwards[1] < along[1] * inwards[0]:
         nodes[:2] = nodes[1::-1]
     return nodes
+
+
+def on_facet(order: int, s: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Shape functions and slopes (order + 1,) of start, end (, middle) at s in (0, 1)."""
+    if order == 1:
+        return np.array([1.0 - s, s]), np.array([-1.0, 1.0])
+    values = np.array([(1.0 - s) * (1.0 - 2.0 * s), s * (2.0 * s - 1.0), 4.0 * s * (1.0 - s)])
+    return values, np.array([4.0 * s - 3.0, 4.0 * s - 1.0, 4.0 - 8.0 * s])

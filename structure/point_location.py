@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes import StructureMesh
-from structure import shapes
+from meshes.kinds import KINDS, Kind, shapes_at
 from structure.errors import StructureError
+from structure.facets import on_facet
 
 INSIDE = 1e-9  # of a cell: a point that far outside in reference coordinates is on its side
 SWEEPS = 50
@@ -44,30 +45,36 @@ def _in_cell(mesh: StructureMesh, place: NDArray[np.float64]) -> Shares | None:
     # a curved side may reach beyond its nodes
     slack = (high - low) * (0.1 if mesh.order == 2 else INSIDE)
     near = np.all((low - slack <= place) & (place <= high + slack), axis=1)
-    found, least = None, INSIDE
+    kind, found, least = KINDS[mesh.cells.shape[1]], None, INSIDE
     for cell in mesh.cells[near]:
-        at = _reference_point(mesh, mesh.points[cell], place)
-        if at is not None and shapes.outside_by(mesh.cell, at) <= least:
-            found, least = (cell, shapes.in_cell(mesh.cell, mesh.order, at)[0]), shapes.outside_by(mesh.cell, at)
+        at = _reference_place(kind, mesh.points[cell], place)
+        if at is not None and (outside := _outside_by(kind, at)) <= least:
+            found, least = (cell, shapes_at(kind, at[None])[0][0]), outside
     return found
 
 
-def _reference_point(
-    mesh: StructureMesh, nodes: NDArray[np.float64], place: NDArray[np.float64]
-) -> NDArray[np.float64] | None:
+def _reference_place(kind: Kind, nodes: NDArray[np.float64], place: NDArray[np.float64]) -> NDArray[np.float64] | None:
     """Newton's solution of ``sum N_a(at) x_a = place``; None where there is none near the cell."""
-    at = shapes.CENTRES[mesh.cell].copy()
+    at = np.mean(kind.nodes, axis=0)
     size = np.ptp(nodes, axis=0).max()
     for _ in range(SWEEPS):
-        values, slopes = shapes.in_cell(mesh.cell, mesh.order, at)
-        gap = place - values @ nodes
+        values, slopes = shapes_at(kind, at[None])
+        gap = place - values[0] @ nodes
         if np.abs(gap).max() <= 1e-14 * size:
             break
-        jacobian = nodes.T @ slopes
+        jacobian = nodes.T @ slopes[0]
         if abs(np.linalg.det(jacobian)) < 1e-12 * size**2 or np.abs(at).max() > 10.0:
             return None
-        at += np.linalg.solve(jacobian, gap)
+        at = at + np.linalg.solve(jacobian, gap)
     return at if np.abs(gap).max() <= 1e-10 * size else None
+
+
+def _outside_by(kind: Kind, at: NDArray[np.float64]) -> float:
+    """How far a place lies outside the reference cell: 0 on its boundary, negative inside."""
+    xi, eta = at
+    if kind.cell == "quadrilateral":
+        return max(-xi, xi - 1.0, -eta, eta - 1.0)
+    return max(-xi, -eta, xi + eta - 1.0)
 
 
 def _on_facet(mesh: StructureMesh, place: NDArray[np.float64]) -> Shares:
@@ -83,7 +90,7 @@ def _on_facet(mesh: StructureMesh, place: NDArray[np.float64]) -> Shares:
     for number in np.flatnonzero(distance <= distance.min() + (0.5 * lengths.max() if mesh.order == 2 else 0.0)):
         best = min(best, _nearest_on(mesh, facets[number], share[number], place, number))
     off, number, s = best
-    values, _ = shapes.on_line(mesh.order, s)
+    values, _ = on_facet(mesh.order, s)
     allowed = _bulge(mesh, facets, number)
     if off > allowed:
         nearest = tuple((values @ mesh.points[facets[number]]).tolist())
@@ -96,7 +103,7 @@ def _on_facet(mesh: StructureMesh, place: NDArray[np.float64]) -> Shares:
 
 def _boundary(mesh: StructureMesh) -> NDArray[np.int64]:
     """Facets (f, order + 1) that belong to one cell only."""
-    sides = np.concatenate([mesh.cells[:, edge] for edge in shapes.EDGES[mesh.cell, mesh.order]])
+    sides = np.concatenate([mesh.cells[:, edge] for edge in KINDS[mesh.cells.shape[1]].sides])
     _, first, count = np.unique(np.sort(sides[:, :2], axis=1), axis=0, return_index=True, return_counts=True)
     return sides[first[count == 1]]
 
@@ -107,10 +114,10 @@ def _nearest_on(
     """Distance [m], number and s in (0, 1) of the point of a facet nearest to a place."""
     nodes = mesh.points[facet]
     for _ in range(SWEEPS if mesh.order == 2 else 1):
-        values, slopes = shapes.on_line(mesh.order, s)
+        values, slopes = on_facet(mesh.order, s)
         tangent = slopes @ nodes
         s = float(np.clip(s + (place - values @ nodes) @ tangent / (tangent @ tangent), 0.0, 1.0))
-    values, _ = shapes.on_line(mesh.order, s)
+    values, _ = on_facet(mesh.order, s)
     return float(np.hypot(*(place - values @ nodes))), int(number), s
 
 
@@ -132,5 +139,5 @@ def _bulge(mesh: StructureMesh, facets: NDArray[np.int64], number: int) -> float
 
 def _outwards(mesh: StructureMesh, facet: NDArray[np.int64], end: int) -> NDArray[np.float64]:
     """Tangent (2,) of a facet at its start (0) or end (1), away from that node."""
-    _, slopes = shapes.on_line(mesh.order, float(end))
+    _, slopes = on_facet(mesh.order, float(end))
     return (1 - 2 * end) * (slopes @ mesh.points[facet])

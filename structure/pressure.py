@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
-from structure import shapes
 from structure.boundary import boundary_exchange
 from structure.discrete import DiscreteBody
-from structure.facets import boundary_facets
+from structure.facets import boundary_facets, on_facet
 from structure.loads import Pressure
 
 
@@ -61,6 +60,6 @@ def _along_facet(order: int) -> NDArray[np.float64]:
     points, weights = np.polynomial.legendre.leggauss(order + 1)
     total = np.zeros((order + 1, order + 1))
     for point, weight in zip(points, weights, strict=True):
-        values, slopes = shapes.on_line(order, (point + 1.0) / 2.0)
+        values, slopes = on_facet(order, (point + 1.0) / 2.0)
         total += weight / 2.0 * np.outer(values, slopes)
     return total
