@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -48,14 +49,12 @@ def _read(key: str, name: str, folder: Path) -> tuple[list[float], list[float]]:
         if cells == [""]:
             continue
         if len(cells) != 2:
-            raise refusal(
-                key, name, f"has {len(cells)} in line {number}: give {COLUMNS}".replace("1 in", "1 column in")
-            )
+            raise refusal(key, name, f"has {_count(len(cells), 'column')} in line {number}; give {COLUMNS}")
         values = [_number(cell) for cell in cells]
         if values == [None, None] and not rows:
             continue  # names of the columns
         for cell, value in zip(cells, values, strict=True):
-            if value is None:
+            if value is None or not isfinite(value):
                 raise refusal(key, name, f'has "{cell}" in line {number}, which is no finite number; mend it')
         if rows and values[0] <= rows[-1][0]:
             raise refusal(
@@ -65,15 +64,18 @@ def _read(key: str, name: str, folder: Path) -> tuple[list[float], list[float]]:
             )
         rows.append((values[0], values[1]))
     if len(rows) < 2:
-        raise refusal(key, name, f"has {len(rows)} rows of numbers; give at least 2, in {COLUMNS}")
+        raise refusal(key, name, f"has {_count(len(rows), 'row')} of numbers; give at least 2, in {COLUMNS}")
     times, factors = zip(*rows, strict=True)
     return list(times), list(factors)
 
 
 def _number(cell: str) -> float | None:
-    """The finite number in a cell, or None."""
+    """The number in a cell, or None."""
     try:
-        value = float(cell)
+        return float(cell)
     except ValueError:
         return None
-    return value if abs(value) < float("inf") else None
+
+
+def _count(number: int, thing: str) -> str:
+    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
