@@ -29,8 +29,15 @@ def refined(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.n
     return points, np.vstack([np.column_stack(t) for t in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))])
 
 
+def _sides(points: np.ndarray, cells: np.ndarray) -> dict[str, np.ndarray]:
+    """Edges of cells whose both ends lie on a side of the unit square."""
+    edges = np.stack([cells, np.roll(cells, -1, axis=1)], axis=2).reshape(-1, 2)
+    places = {"left": (0, 0.0), "right": (0, 1.0), "bottom": (1, 0.0), "top": (1, 1.0)}
+    return {name: edges[(points[edges, axis] == at).all(axis=1)] for name, (axis, at) in places.items()}
+
+
 def rough_square(cell: str, order: int, refinements: int, sides: int = 3) -> meshes.StructureMesh:
-    """The unit square in triangles between points at random, or quadrilaterals, three in each triangle."""
+    """The unit square in triangles between points at random, or quadrilaterals, three in each triangle; named sides."""
     rng = np.random.default_rng(4)
     x, y = (a.ravel() for a in np.meshgrid(*[np.linspace(0, 1, sides + 1)] * 2))
     inside = (np.minimum(x, 1 - x) > 0) & (np.minimum(y, 1 - y) > 0)
@@ -47,6 +54,7 @@ def rough_square(cell: str, order: int, refinements: int, sides: int = 3) -> mes
         centre = len(points) + np.arange(len(cells))
         points = np.vstack([points, middle_of_cell])
         cells = np.vstack([np.column_stack([cells[:, k], middle[:, k], centre, middle[:, k - 1]]) for k in range(3)])
+    boundaries = _sides(points, cells)
     if order == 2:
         middle_of_cell = points[cells].mean(axis=1)
         points, middle = _with_middles(points, cells)
@@ -54,4 +62,4 @@ def rough_square(cell: str, order: int, refinements: int, sides: int = 3) -> mes
         if cell == "quadrilateral":
             cells = np.column_stack([cells, len(points) + np.arange(len(cells))])
             points = np.vstack([points, middle_of_cell])
-    return meshes.from_arrays(points, cells)
+    return meshes.from_arrays(points, cells, boundaries=boundaries)

@@ -1,4 +1,4 @@
-"""Newmark: order of the period, energy and momentum balances, damping, stability, state."""
+"""Newmark: order of the period, energy and momentum balances with loads and damping, state."""
 
 import meshes
 import numpy as np
@@ -7,7 +7,6 @@ from structure import (
     BodyForce,
     BoundaryLoad,
     ElasticStructure,
-    Newmark,
     PlaneStrain,
     PointLoad,
     Ramp,
@@ -95,43 +94,6 @@ def test_impulse_is_the_change_of_momentum(soft: PlaneStrain) -> None:
         last = force
     # Round-off of K u, with E u = 7e6 N/m^2 times 1e-3 m, over 200 steps.
     np.testing.assert_allclose(body.momentum(), impulse, rtol=1e-11, atol=1e-11)
-
-
-def test_rayleigh_damps_a_mode_by_its_ratio(soft: PlaneStrain) -> None:
-    beam = meshes.beam(length=1.0, height=0.1, along=20)
-    omega = 2 * np.pi * ElasticStructure(beam, material=soft, time_step=1.0).frequencies(1)[0]
-    damping = Rayleigh(mass_factor=0.02 * omega, stiffness_factor=0.04 / omega)
-    dt = 2 * np.pi / omega / 400
-    body = ElasticStructure(beam, material=soft, time_step=dt, damping=damping)
-    body.release_from_mode(1, 1e-3)
-    start = body.energies().strain
-    for _ in range(1200):
-        body.advance(np.zeros_like(body.polyline.points))
-    e = body.energies()
-    # Ratio (0.02 + 0.04)/2 = 0.03: after three damped periods the swing is again at its top.
-    ratio, periods = 0.03, 3
-    expected = start * np.exp(-2 * ratio * 2 * np.pi * periods)
-    # The energy sampled within a period wavers by the damping ratio.
-    assert e.kinetic + e.strain == pytest.approx(expected, rel=0.02)
-    assert e.rayleigh_loss == pytest.approx(start - expected, rel=0.02)
-    assert damping.overdamped_above == pytest.approx(2 * omega / 0.04)
-
-
-def test_linear_acceleration_is_stable_up_to_its_bound_only(soft: PlaneStrain) -> None:
-    with pytest.raises(StructureError, match="allow_conditional"):
-        Newmark(beta=1 / 6, gamma=0.5)
-    beam = meshes.beam(length=1.0, height=0.5, along=2, across=1)
-    highest = 2 * np.pi * ElasticStructure(beam, material=soft, time_step=1.0).frequencies(9)[-1]
-    scheme = Newmark(beta=1 / 6, gamma=0.5, allow_conditional=True)
-    growth = []
-    for product in (3.44, 3.49):  # the bound is sqrt(12) = 3.464
-        body = ElasticStructure(beam, material=soft, time_step=product / highest, scheme=scheme)
-        body.set_initial(velocity=np.random.default_rng(1).normal(size=beam.points.shape))
-        for _ in range(400):
-            body.advance(np.zeros_like(body.polyline.points))
-        growth.append(np.abs(body.boundary_displacement - body.boundary_displacement[0]).max())
-    assert growth[0] < 10
-    assert growth[1] > 1e6 * growth[0]
 
 
 def test_free_fall_of_the_loaded_body_is_exact(soft: PlaneStrain) -> None:
