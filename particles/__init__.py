@@ -16,6 +16,7 @@ from particles.contact import (
 )
 from particles.crowding import packing_limit
 from particles.errors import ParticleError
+from particles.facets import Facets
 from particles.network import StiffnessNetwork, stiffness_network
 from particles.stability import StepLimit, sharp_limit
 from particles.state import Grains
@@ -31,6 +32,7 @@ __all__ = [
     "ContactTable",
     "CoulombFriction",
     "ElasticPlasticRolling",
+    "Facets",
     "GlobalDamping",
     "Grains",
     "HertzSpringDashpot",

@@ -7,6 +7,8 @@ import numpy as np
 
 from particles.contact import Contact
 from particles.errors import ParticleError
+from particles.facets import FacetContacts
+from particles.history import fresh_history, history_of
 from particles.kernels import cells
 from particles.kernels.layout import Grid, PairArrays, WallArrays
 from particles.periodic import Period, folded, with_images
@@ -35,11 +37,11 @@ def block_starts(n_free: int, n: int) -> np.ndarray:
     return np.append(free, n)
 
 
-def choose_skin(grains: Grains, dt: float) -> float:
-    """Reach of the list beyond contact [m]: STEPS_WANTED steps of the fastest grain, within limits."""
+def choose_skin(grains: Grains, dt: float, other_speed: float = 0.0) -> float:
+    """Reach of the list beyond contact [m]: STEPS_WANTED steps of the fastest grain or facet, within limits."""
     free = slice(grains.n_free) if grains.n_free else slice(None)
     scale = float(grains.radius[free].mean())
-    speed = float(np.sqrt(np.max(grains.vx**2 + grains.vy**2)))
+    speed = max(float(np.sqrt(np.max(grains.vx**2 + grains.vy**2))), other_speed)
     return float(np.clip(2.0 * STEPS_WANTED * speed * dt, SMALLEST_SKIN * scale, LARGEST_SKIN * scale))
 
 
@@ -55,12 +57,22 @@ class ContactList:
         Whether the dashpot forces of the last step are kept for the energy ledger.
     period : (2,) of float or None
         After which x and y repeat [m].
+    facets : FacetContacts, optional
+        Listed together with the grains.
     """
 
-    def __init__(self, contact: Contact, walls: list[Wall], *, ledger: bool, period: Period = (None, None)) -> None:
+    def __init__(
+        self,
+        contact: Contact,
+        walls: list[Wall],
+        *,
+        ledger: bool,
+        period: Period = (None, None),
+        facets: FacetContacts | None = None,
+    ) -> None:
         self.contact = contact
         self.ledger = ledger
-        self.period = period
+        self.period, self.facets = period, facets
         self.skin = 0.0
         none = np.zeros(0, np.uint32)
         self.pairs = self._pair_arrays(np.zeros(1, np.int64), none, none, np.zeros(2, np.int64))
@@ -75,7 +87,11 @@ class ContactList:
         """List near pairs and walls, carry the histories over; before, if asked, sort the free grains by cell."""
         self._require_finite(grains)
         first = len(self.pairs.start) == 1
-        self.skin = choose_skin(grains, dt)
+        if self.facets is None:
+            self.skin = choose_skin(grains, dt)
+        else:
+            self.skin = choose_skin(grains, dt, self.facets.speed)
+            self.facets.settle(grains)
         old_of = np.arange(len(grains))
         if sort:
             old_of[: grains.n_free] = self._storage_order(grains)
@@ -86,8 +102,12 @@ class ContactList:
         if first:
             self._require_apart(grains)
         else:
-            cells.carry_pairs(old_of, before.start, before.partner, _history(before), *rows[::2], _history(self.pairs))
+            cells.carry_pairs(
+                old_of, before.start, before.partner, history_of(before), *rows[::2], history_of(self.pairs)
+            )
         self._rebuild_walls(grains, old_of)
+        if self.facets is not None:
+            self.facets.rebuild(grains, old_of, self.skin, block_starts(grains.n_free, len(grains)))
 
     def _storage_order(self, grains: Grains) -> np.ndarray:
         """Order in memory of the free grains: by cells of the smallest size, columns first."""
@@ -159,7 +179,9 @@ class ContactList:
             block=block,
             **self._memory(len(grain)),
         )
-        cells.carry_walls(old_of, grains.n_free, old.grain, old.wall, _history(old), grain, wall, _history(self.walls))
+        cells.carry_walls(
+            old_of, grains.n_free, old.grain, old.wall, history_of(old), grain, wall, history_of(self.walls)
+        )
 
     def _grid(self, x: Floats, y: Floats, largest_radius: float) -> Grid:
         """Cells of the largest diameter plus the skin over the bounding box of all grains."""
@@ -172,13 +194,7 @@ class ContactList:
         return Grid(x_min, y_min, size, int(width / size) + 1, int(height / size) + 1)
 
     def _memory(self, slots: int) -> dict[str, np.ndarray]:
-        return {
-            "spring": np.zeros(slots if self.contact.spins else 0),
-            "moment": np.zeros(slots if self.contact.rolls else 0),
-            "dash_n": np.zeros(slots if self.ledger else 0),
-            "dash_t": np.zeros(slots if self.ledger else 0),
-            "dash_r": np.zeros(slots if self.ledger and self.contact.damps_rolling else 0),
-        }
+        return fresh_history(self.contact, slots, ledger=self.ledger)
 
     def _pair_arrays(self, start: np.ndarray, owner: np.ndarray, partner: np.ndarray, blocks: np.ndarray) -> PairArrays:
         crossing_start, *incoming = cells.list_crossings(blocks, start, partner)
@@ -238,7 +254,3 @@ def _levels(radius: np.ndarray) -> list[tuple[np.ndarray, float]]:
     level = np.floor(np.log2(radius / radius.min()) + 1e-12).astype(np.int64)
     found = [np.nonzero(level == k)[0] for k in np.unique(level)]
     return [(members, float(radius[members].max())) for members in found]
-
-
-def _history(listed: PairArrays | WallArrays) -> tuple[np.ndarray, ...]:
-    return listed.spring, listed.moment, listed.dash_n, listed.dash_t, listed.dash_r

@@ -20,8 +20,8 @@ class StiffnessNetwork:
     """Small motion about the present state: ``M a + C v + K u = 0``, ``K = B^T k B``, ``C = B^T c B + alpha M``.
 
     The unknowns are the displacements u [m] of the free grains along x, then along y, then, if
-    grains turn, their angles [rad], each in the order of `Grains`. Walls and prescribed grains
-    are fixed.
+    grains turn, their angles [rad], each in the order of `Grains`. Walls, facets and
+    prescribed grains are fixed.
 
     Attributes
     ----------
@@ -34,13 +34,14 @@ class StiffnessNetwork:
     drag : (n_unknowns,)
         Global damping alpha [1/s].
     contacts : int
-        Touching pairs and walls.
+        Touching pairs, walls and facets.
 
     Notes
     -----
     Springs are taken at their slope at the present overlap. Every contact that has friction
     sticks: one at Coulomb's or at the rolling limit counts with its springs, and one that may not
     pull with its tension. The constant rolling torque (type A) has no slope and does not count.
+    Where a disc covers a notch of facets, springs of a negative k take away what both have there.
     Near pairs that do not touch are left out, and so is the turn of the normal force with the
     contact, which takes the share delta/d of k_n from the transverse stiffness.
     """
@@ -67,7 +68,7 @@ class StiffnessNetwork:
 
 @dataclass(frozen=True)
 class _Contacts:
-    """Touching contacts: grains i, and j or FIXED, normals (n, 2) from i to j, lever arms, and what laws ask."""
+    """Touching contacts: grains i, and j or FIXED, normals (n, 2) from i to j, lever arms, what laws ask, charges."""
 
     i: Places
     j: Places
@@ -75,6 +76,7 @@ class _Contacts:
     arm_i: Floats
     arm_j: Floats
     laws: Touching
+    charge: Floats
 
 
 def stiffness_network(system: ParticleSystem) -> StiffnessNetwork:
@@ -83,17 +85,18 @@ def stiffness_network(system: ParticleSystem) -> StiffnessNetwork:
     Free of contacts it has no springs. Changes nothing but that the system is started.
     """
     system.start()
-    pairs, walls = _pairs(system), _walls(system)
-    i, j, normal, arm_i, arm_j = (
-        np.concatenate([getattr(part, name) for part in (pairs, walls)])
-        for name in ("i", "j", "normal", "arm_i", "arm_j")
+    parts = [_pairs(system), _walls(system), *([] if system.facets is None else [_facets(system)])]
+    i, j, normal, arm_i, arm_j, charge = (
+        np.concatenate([getattr(part, name) for part in parts])
+        for name in ("i", "j", "normal", "arm_i", "arm_j", "charge")
     )
-    asked = Touching(*(np.concatenate(both) for both in zip(pairs.laws, walls.laws, strict=True)))
+    asked = Touching(*(np.concatenate(column) for column in zip(*(part.laws for part in parts), strict=True)))
     k, c = np.empty((len(i), 3)), np.empty((len(i), 3))
     slopes(system.contact.numbers(), asked, k, c)
+    k, c = charge[:, None] * k, charge[:, None] * c
     g, n, spins = system.grains, system.grains.n_free, system.contact.spins
     stretch = _stretch(i, np.where(j < n, j, FIXED), normal, arm_i, arm_j, n, spins)
-    present = np.nonzero((k.T.ravel() > 0.0) | (c.T.ravel() > 0.0))[0]
+    present = np.nonzero((k.T.ravel() != 0.0) | (c.T.ravel() != 0.0))[0]
     alpha_t, alpha_r = (0.0, 0.0) if system.damping is None else system.damping.numbers()
     mass, inertia = g.mass[:n], g.inertia[:n]
     return StiffnessNetwork(
@@ -102,7 +105,7 @@ def stiffness_network(system: ParticleSystem) -> StiffnessNetwork:
         damping=c.T.ravel()[present],
         inertia=np.concatenate([mass, mass, inertia] if spins else [mass, mass]),
         drag=np.repeat([alpha_t, alpha_t, alpha_r][: 3 if spins else 2], n),
-        contacts=len(i),
+        contacts=int(charge.sum()),
     )
 
 
@@ -125,7 +128,7 @@ def _pairs(system: ParticleSystem) -> _Contacts:
         g.material[j].astype(np.int64),
     )
     normal = apart[touch] / distance[:, None]
-    return _Contacts(i, j, normal, g.radius[i] - 0.5 * delta, g.radius[j] - 0.5 * delta, asked)
+    return _Contacts(i, j, normal, g.radius[i] - 0.5 * delta, g.radius[j] - 0.5 * delta, asked, np.ones(len(i)))
 
 
 def _walls(system: ParticleSystem) -> _Contacts:
@@ -139,7 +142,26 @@ def _walls(system: ParticleSystem) -> _Contacts:
     )
     normal = -np.column_stack([walls.nx[w], walls.ny[w]])
     arm = g.radius[i] - 0.5 * delta
-    return _Contacts(i, np.full(len(i), len(g)), normal, arm, np.zeros(len(i)), asked)
+    return _fixed(system, i, normal, arm, asked, np.ones(len(i)))
+
+
+def _facets(system: ParticleSystem) -> _Contacts:
+    g, facets = system.grains, system.facets
+    i, charge, delta, *normal = facets.touching(g).T
+    free = i < g.n_free
+    i, charge, delta, normal = i[free].astype(np.int64), charge[free], delta[free], np.column_stack(normal)[free]
+    material = np.broadcast_to(facets.arrays.material, len(i))
+    asked = Touching(
+        delta, g.radius[i], g.inverse_mass[i], g.roll_compliance[i], g.material[i].astype(np.int64), material
+    )
+    return _fixed(system, i, normal, g.radius[i] - delta, asked, charge)
+
+
+def _fixed(
+    system: ParticleSystem, i: Places, normal: Floats, arm: Floats, asked: Touching, charge: Floats
+) -> _Contacts:
+    """Contacts with something that does not give way."""
+    return _Contacts(i, np.full(len(i), len(system.grains)), normal, arm, np.zeros(len(i)), asked, charge)
 
 
 def _stretch(i: Places, j: Places, normal: Floats, arm_i: Floats, arm_j: Floats, n: int, spins: bool) -> csr_matrix:

@@ -10,12 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from particles.contact import Contact, ContactTable, GlobalDamping
 from particles.errors import ParticleError, require
+from particles.facets import FacetContacts, Facets
 from particles.kernels import advance as stepping
 from particles.kernels import energy as looking
 from particles.kernels.layout import (
     DAMPING_AHEAD,
     LEDGER_COLUMNS,
     WALL_WORK,
+    FacetArrays,
     GrainArrays,
     LeadArrays,
     LedgerArrays,
@@ -63,6 +65,8 @@ class ParticleSystem:
     time_step : float
         dt [s].
     walls : sequence of Wall
+    facets : Facets, optional
+        A polyline that moves with its nodes; not together with a period.
     gravity : (2,) floats
         [m/s2].
     damping : GlobalDamping, optional
@@ -90,6 +94,7 @@ class ParticleSystem:
         *,
         time_step: float,
         walls: Sequence[Wall] = (),
+        facets: Facets | None = None,
         gravity: Sequence[float] = (0.0, 0.0),
         damping: GlobalDamping | None = None,
         ledger: bool = True,
@@ -100,7 +105,7 @@ class ParticleSystem:
         require("time step", time_step, above=0.0)
         if len(grains) == 0:
             raise ParticleError("a particle system needs at least one grain")
-        most = max(int(grains.material.max()), max((wall.material for wall in walls), default=0))
+        most = max(int(grains.material.max()), *(part.material for part in [*walls, *([facets] if facets else [])]), 0)
         if isinstance(contact, ContactTable) and most >= contact.materials:
             raise ParticleError(f"material {most} has no row in the table of {contact.materials} contact laws: add it")
         self.grains = grains
@@ -123,7 +128,10 @@ class ParticleSystem:
                 np.zeros((len(self.blocks) - 1, LEDGER_COLUMNS)), np.zeros(len(grains) - grains.n_free)
             )
         self.period = checked_period(period, grains.radius)
-        self.list = ContactList(contact, list(walls), ledger=ledger, period=self.period)
+        if facets is not None and self.period != (None, None):
+            raise ParticleError("facets do not go together with periodic sides: leave out one of them")
+        self.facets = None if facets is None else FacetContacts(facets, contact, ledger=ledger)
+        self.list = ContactList(contact, list(walls), ledger=ledger, period=self.period, facets=self.facets)
         self._started = False
 
     # -- stepping -----------------------------------------------------------------------------
@@ -139,7 +147,7 @@ class ParticleSystem:
             return
         self._rebuild()
         arrays, laws = self._arrays(), self.contact.numbers()
-        stepping.forces(arrays, self.list.pairs, self.list.walls, *laws, None, self.ledger, 0.0)
+        stepping.forces(arrays, self.list.pairs, self.list.walls, self._facets(), *laws, None, self.ledger, 0.0)
         half, lead = 0.5 * self.time_step, self._lead()
         for block in range(len(self.blocks) - 2):
             kick(block, arrays, *self.gravity, self.contact.spins, self._damping(), lead, self.ledger, half)
@@ -155,6 +163,8 @@ class ParticleSystem:
         """Take `steps` leapfrog steps, making new contact lists where needed; 0 only loads the compiled code."""
         self.start()
         self.impulse[:] = 0.0
+        if self.facets is not None:
+            self.facets.arrays.impulse[:] = 0.0
         threaded = self.threads > 1 and len(self.blocks) > 3  # one block of free grains leaves nothing to share
         step = stepping.advance_threaded if threaded else stepping.advance
         if threaded:
@@ -164,8 +174,8 @@ class ParticleSystem:
         while True:
             arrays, listed = self._arrays(), self.list
             done, drifted = step(
-                arrays, listed.pairs, listed.walls, self.gravity, *laws, damping, self._lead(), self.ledger,
-                bool(drifted), listed.reach2, left, self.time_step, self.threads if threaded else 1,
+                arrays, listed.pairs, listed.walls, self._facets(), self.gravity, *laws, damping, self._lead(),
+                self.ledger, bool(drifted), listed.reach2, left, self.time_step, self.threads if threaded else 1,
             )  # fmt: skip
             left -= done
             self.steps_done += done
@@ -184,6 +194,9 @@ class ParticleSystem:
             g.inverse_mass, g.inverse_inertia, g.roll_compliance, g.material, g.x_listed, g.y_listed, self.impulse, self.blocks,
             *self.period,
         )  # fmt: skip
+
+    def _facets(self) -> FacetArrays | None:
+        return None if self.facets is None else self.facets.arrays
 
     def _lead(self) -> LeadArrays | None:
         g = self.grains
@@ -232,7 +245,7 @@ class ParticleSystem:
         n = len(self.grains)
         overlap, contacts = np.zeros(n), np.zeros(n, np.int64)
         numbers = looking.look_at_contacts(
-            self._arrays(), self.list.pairs, self.list.walls, self.contact.numbers(), overlap, contacts
+            self._arrays(), self.list.pairs, self.list.walls, self._facets(), self.contact.numbers(), overlap, contacts
         )
         return ContactLook(*numbers, overlap, contacts)
 
@@ -261,6 +274,8 @@ class ParticleSystem:
             total = self.ledger.loss.sum(axis=0)
             energies |= {f"loss_{name}": total[k] for k, name in enumerate(LOSSES)}
             energies |= {"work_prescribed": self.ledger.prescribed_work.sum(), "work_walls": total[WALL_WORK]}
+            if self.facets is not None:
+                energies["work_facets"] = self.facets.work
         return {name: float(value) for name, value in energies.items()}
 
     @property
@@ -282,10 +297,11 @@ class ParticleSystem:
         return float(self.ledger.prescribed_work[places.start - first : places.stop - first].sum())
 
     def force_residual(self) -> float:
-        """Sum of all contact forces on grains and walls over the sum of their magnitudes: round-off."""
+        """Sum of all contact forces on grains, walls and facets over the sum of their magnitudes: round-off."""
         g = self.grains
-        total = np.array([g.fx.sum(), g.fy.sum()]) + self.wall_force.sum(axis=0)
-        scale = np.hypot(g.fx, g.fy).sum() + np.hypot(*self.wall_force.T).sum()
+        others = self.wall_force if self.facets is None else np.concatenate([self.wall_force, self.facets.force])
+        total = np.array([g.fx.sum(), g.fy.sum()]) + others.sum(axis=0)
+        scale = np.hypot(g.fx, g.fy).sum() + np.hypot(*others.T).sum()
         return float(np.hypot(*total) / scale) if scale > 0.0 else 0.0
 
     # -- checkpoint ---------------------------------------------------------------------------
@@ -297,6 +313,8 @@ class ParticleSystem:
         for group in ("pairs", "walls"):
             arrays = getattr(self.list, group)._asdict()
             saved |= {f"{group}.{name}": array.copy() for name, array in arrays.items()}
+        if self.facets is not None:
+            saved |= {f"facets.{name}": array for name, array in self.facets.state().items()}
         saved["skin"] = np.array(self.list.skin)
         saved["counters"] = np.array([self.steps_done, self.rebuilds, int(self._started)])
         if self.ledger is not None:
@@ -323,6 +341,9 @@ class ParticleSystem:
             names = getattr(self.list, group)._fields
             arrays = type(getattr(self.list, group))(*(np.array(saved[f"{group}.{name}"]) for name in names))
             setattr(self.list, group, arrays)
+        if self.facets is not None:
+            own = {name: saved[f"facets.{name}"] for name in FacetArrays._fields}
+            self.facets.restore(own)
         self.list.skin = float(saved["skin"])
         self.steps_done, self.rebuilds, started = (int(c) for c in saved["counters"])
         self._started = bool(started)

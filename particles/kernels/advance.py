@@ -3,6 +3,7 @@
 import numba
 import numpy as np
 
+from particles.kernels.facets import facet_forces, move_nodes, receive_pushes
 from particles.kernels.forces import clear_forces, pair_forces, wall_forces
 from particles.kernels.jit import kernel, threaded_kernel
 from particles.kernels.laws.response import Laws
@@ -11,11 +12,12 @@ from particles.kernels.motion import add_incoming, drift, kick, prescribed_work
 
 
 @kernel
-def block_forces(b, grains, pairs, walls, normal, tangential, rolling, lead, ledger, dt):
+def block_forces(b, grains, pairs, walls, facets, normal, tangential, rolling, lead, ledger, dt):
     laws = Laws(normal, tangential, rolling)  # numba's threads take tuples, but no tuples of tuples
     clear_forces(b, grains)
     pair_forces(b, grains, pairs, laws, lead, ledger, dt)
     wall_forces(b, grains, walls, laws, lead, ledger, dt)
+    facet_forces(b, grains, facets, laws, lead, ledger, dt)
 
 
 @kernel
@@ -61,18 +63,20 @@ def move_walls(walls, reach2, dt):
     return stale
 
 
-def _forces(grains, pairs, walls, normal, tangential, rolling, lead, ledger, dt):
+def _forces(grains, pairs, walls, facets, normal, tangential, rolling, lead, ledger, dt):
     """All contact forces at the present positions."""
     n_blocks = grains.block_start.shape[0] - 1
     for b in numba.prange(n_blocks):
-        block_forces(b, grains, pairs, walls, normal, tangential, rolling, lead, ledger, dt)
+        block_forces(b, grains, pairs, walls, facets, normal, tangential, rolling, lead, ledger, dt)
     for b in numba.prange(n_blocks):
         add_incoming(b, grains, pairs, present(tangential))
+    receive_pushes(facets, ledger, dt)
 
 
 def _advance(
-    grains, pairs, walls, gravity, normal, tangential, rolling, damping, lead, ledger, drifted, reach2, steps, dt, teams
-):
+    grains, pairs, walls, facets, gravity, normal, tangential, rolling, damping, lead, ledger,
+    drifted, reach2, steps, dt, teams,
+):  # fmt: skip
     """Up to `steps` leapfrog steps: drift, contact forces, kick.
 
     Returns the number of steps done, and 1 if the list went stale: then the grains have drifted
@@ -90,14 +94,14 @@ def _advance(
     if steps > 0 and not drifted:
         for b in numba.prange(n_blocks):
             stale[b] = block_drift(b, grains, tangential, ledger, reach2, dt)
-        if move_walls(walls, reach2, dt) or stale.any():
+        if move_walls(walls, reach2, dt) | move_nodes(facets, ledger, reach2, dt) | stale.any():
             return 0, 1
     for step in range(steps):
         drifts = step + 1 < steps
         for team in numba.prange(teams):
             first = team * n_blocks // teams
             for b in range(first, (team + 1) * n_blocks // teams):
-                block_forces(b, grains, pairs, walls, normal, tangential, rolling, lead, ledger, dt)
+                block_forces(b, grains, pairs, walls, facets, normal, tangential, rolling, lead, ledger, dt)
                 if source[b] >= first:
                     stale[b] = block_motion(
                         b, grains, pairs, gravity_x, gravity_y, tangential, damping, lead, ledger, reach2, drifts, dt
@@ -109,7 +113,8 @@ def _advance(
                     stale[b] = block_motion(
                         b, grains, pairs, gravity_x, gravity_y, tangential, damping, lead, ledger, reach2, drifts, dt
                     )
-        if drifts and (move_walls(walls, reach2, dt) or stale.any()):
+        receive_pushes(facets, ledger, dt)
+        if drifts and (move_walls(walls, reach2, dt) | move_nodes(facets, ledger, reach2, dt) | stale.any()):
             return step + 1, 1
     return steps, 0
 

@@ -2,6 +2,8 @@
 
 import math
 
+from particles.kernels.facet_cells import deepest_inside
+from particles.kernels.features import INSIDE, charge_of, foot_on, side_of
 from particles.kernels.jit import kernel
 from particles.kernels.laws.materials import of_pair
 from particles.kernels.laws.normal import normal_energy, normal_stiffness
@@ -23,7 +25,7 @@ def stored(laws, delta, f, m, r_eff):
 
 
 @kernel
-def look_at_contacts(grains, pairs, walls, laws, overlap, contacts):
+def look_at_contacts(grains, pairs, walls, facets, laws, overlap, contacts):
     """Fill `overlap` (sum per grain [m]) and `contacts` (count per grain).
 
     Returns the energies of the three springs, the number of contacts, the largest overlap over
@@ -74,6 +76,41 @@ def look_at_contacts(grains, pairs, walls, laws, overlap, contacts):
             overlap[i] += delta
             contacts[i] += 1
             count += 1
+            if delta / grains.radius[i] > deepest:
+                deepest, deepest_at = delta / grains.radius[i], i
+    if facets is not None:
+        e_n, e_t, e_r, more, depth, at = look_at_facets(grains, facets, laws, overlap, contacts)
+        energy_n, energy_t, energy_r, count = energy_n + e_n, energy_t + e_t, energy_r + e_r, count + more
+        if depth > deepest:
+            deepest, deepest_at = depth, at
+    return energy_n, energy_t, energy_r, count, deepest, deepest_at
+
+
+@kernel
+def look_at_facets(grains, facets, laws, overlap, contacts):
+    """The same for facets. What their charges cancel counts once; a grain lost inside counts as the deepest."""
+    energy_n = energy_t = energy_r = 0.0
+    count = 0
+    deepest, deepest_at = deepest_inside(grains, facets)
+    for k in range(facets.grain.shape[0]):
+        i = facets.grain[k]
+        charge = charge_of(side_of(facets, facets.feature[k], grains.x[i], grains.y[i]))
+        if charge == 0:
+            continue
+        distance = foot_on(facets, facets.feature[k], grains.x[i], grains.y[i]).distance
+        delta = grains.radius[i] - distance
+        if delta > 0.0 and distance > -INSIDE * grains.radius[i]:
+            f = m = 0.0
+            if present(laws.tangential):
+                f = facets.spring[k]
+            if turns_spring(laws.rolling):
+                m = facets.moment[k]
+            pair = of_pair(laws, grains.material[i], facets.material[0])
+            e_n, e_t, e_r = stored(pair, delta, f, m, grains.radius[i])
+            energy_n, energy_t, energy_r = energy_n + charge * e_n, energy_t + charge * e_t, energy_r + charge * e_r
+            overlap[i] += charge * delta
+            contacts[i] += charge
+            count += charge
             if delta / grains.radius[i] > deepest:
                 deepest, deepest_at = delta / grains.radius[i], i
     return energy_n, energy_t, energy_r, count, deepest, deepest_at

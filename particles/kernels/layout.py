@@ -99,6 +99,43 @@ class WallArrays(NamedTuple):
     dash_r: Array
 
 
+class FacetArrays(NamedTuple):
+    """A moving polyline: nodes, features in chain order, and the grains near them (`kernels.features`).
+
+    A feature is a facet from the node `before` to the node `after`, or the node `at` between the
+    nodes `before` and `after` of its facets; -1 stands for none.
+    """
+
+    x: Array  # (n_nodes,) position at the integer step
+    y: Array
+    vx: Array  # (n_nodes,) velocity at the half step that follows the position
+    vy: Array
+    fx: Array  # (n_nodes,) force of the grains at the integer step
+    fy: Array
+    impulse: Array  # (n_nodes, 2) of the grains since it was cleared [N s/m]
+    work: Array  # (n_nodes,) done on the grains, for the ledger
+    x_listed: Array  # (n_nodes,) position when the near grains were listed
+    y_listed: Array
+    before: Array  # (n_features,) nodes
+    at: Array  # (n_features,) -1 for a facet
+    after: Array
+    previous: Array  # (n_features,) neighbours in the chain
+    following: Array
+    material: Array  # (1,)
+    grain: Array  # (n_near,) uint32, ascending
+    feature: Array  # (n_near,) uint32
+    block: Array  # (n_blocks + 1,) first near pair of each block
+    side: Array  # (n_near,) uint8, where the grain stands along the feature
+    side_now: Array
+    spring: Array  # (n_near,)
+    moment: Array  # (n_near,)
+    dash_n: Array  # (n_near,)
+    dash_t: Array
+    dash_r: Array
+    pushes: Array  # (n_near,) bool, whether `push` counts
+    push: Array  # (n_near, 3, 2) force of the grain on the nodes before, at and after
+
+
 class LeadArrays(NamedTuple):
     """What the velocities of all grains gain in the half step that ends at the present."""
 
