@@ -172,6 +172,7 @@ def _structure(scene: Scene, mesh: meshes.StructureMesh) -> fem.Structure:
         scheme=_scheme(table),
         loads=loads,
         element=table.element,
+        theory=table.theory,
     )
     if table.initial is not None:
         body.release_from_mode(table.initial.mode, table.initial.amplitude)

@@ -1,14 +1,13 @@
-"""What a user should know of a run before it starts and after it ends."""
+"""What a user should know of a run before it starts and while it runs."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from coupled.build import WARNED_SHARE, Built, stable_ratio
-from coupled.observe import Observation
 from coupled.step import StepLimits, limits_of
-
-LARGE_STRAIN, LARGE_ROTATION = 0.02, 0.1
+from structure import departures
 
 
 def before(built: Built, limits: StepLimits | None = None) -> list[str]:
@@ -42,13 +41,9 @@ def before(built: Built, limits: StepLimits | None = None) -> list[str]:
     return said
 
 
-def after(built: Built, seen: Observation, largest_strain: float) -> list[str]:
-    """Sentences on results that leave the theory in use."""
-    said = []
-    if built.scene.structure is not None and built.scene.structure.kind == "elastic":
-        if largest_strain > LARGE_STRAIN:
-            said.append(f"largest strain {largest_strain:.3g} leaves the small-strain theory: distrust the stresses")
-        turn = seen.numbers["rotation"]
-        if abs(turn) > LARGE_ROTATION:
-            said.append(f"the structure has turned by {turn:.3g} rad, which the linear theory does not follow")
-    return said
+def beyond_theory(built: Built, numbers: Mapping[str, float]) -> dict[str, str]:
+    """Sentences, by quantity, on numbers of an observation that leave the theory in use."""
+    structure = built.scene.structure
+    if structure is None or structure.theory is None:
+        return {}
+    return departures(structure.theory, numbers)

@@ -64,9 +64,16 @@ def models(scene: Scene) -> list[str]:
         "rows of fixed grains": bool(scene.rows),
         "gravity": any(scene.gravity),
         f"{scene.structure.kind} structure" if scene.structure else "": scene.structure is not None,
+        f"{_theory(scene)} theory": _theory(scene) is not None,
         "glued interface": scene.interface is not None,
     }
     return [name for name, wanted in named.items() if wanted]
+
+
+def _theory(scene: Scene) -> str | None:
+    return (
+        None if scene.structure is None or scene.structure.theory is None else scene.structure.theory.replace("_", "-")
+    )
 
 
 def _on_lattice(scene: Scene) -> Scene:

@@ -10,7 +10,7 @@ import os
 import sys
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Optional
+from typing import Annotated
 
 import typer
 
@@ -35,7 +35,7 @@ _ROOM_ERRORS = {
 
 SceneArgument = Annotated[str, typer.Argument(help="Scene file, or the name of a scene that ships.", metavar="SCENE")]
 SetOption = Annotated[
-    Optional[list[str]],
+    list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Override one key, e.g. time.duration=1.0."),
 ]
 
@@ -92,11 +92,11 @@ def _options(
 @app.command()
 def run(
     scene: SceneArgument,
-    out: Annotated[Optional[Path], typer.Option(help="Folder of the run.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder of the run.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint.")] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what the folder holds.")] = False,
     overrides: SetOption = None,
-    threads: Annotated[Optional[int], typer.Option(min=1, help="Threads for the grains; all cores by default.")] = None,
+    threads: Annotated[int | None, typer.Option(min=1, help="Threads for the grains; all cores by default.")] = None,
     progress: Annotated[bool, typer.Option(help="Show a progress bar.")] = True,
 ) -> None:
     """Run a scene and write its results."""
@@ -151,7 +151,7 @@ def list_scenes() -> None:
 @app.command()
 def new(
     kind: Annotated[str, typer.Argument(help="tube, beam or grains.", metavar="KIND")],
-    to: Annotated[Optional[Path], typer.Option(help="File to write; KIND.toml by default.")] = None,
+    to: Annotated[Path | None, typer.Option(help="File to write; KIND.toml by default.")] = None,
 ) -> None:
     """Write a small commented scene to start from."""
     from coupled.templates import write_template

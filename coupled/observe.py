@@ -21,6 +21,8 @@ UNITS = {
     "rotation": "rad",
     "max_von_mises": "Pa",
     "max_strain": "-",
+    "local_rotation": "rad",
+    "compression": "-",
     "contacts": "-",
     "coordination": "-",
     "deepest_overlap": "-",
@@ -79,12 +81,14 @@ def _structure_numbers(model: Model) -> dict[str, float]:
     numbers = {"applied_x": applied[0], "applied_y": applied[1]}
     if model.glued is not None:
         numbers |= {"reaction_x": model.reaction[0], "reaction_y": model.reaction[1]}
+    beyond = {"local_rotation": peaks.local_rotation, "compression": peaks.compression}
     return numbers | {
         "centroid_x": centroid[0],
         "centroid_y": centroid[1],
         "rotation": body.mean_rotation(),
         "max_von_mises": peaks.von_mises,
         "max_strain": peaks.strain,
+        **{name: value for name, value in beyond.items() if value is not None},
     }
 
 

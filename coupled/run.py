@@ -34,7 +34,9 @@ from coupled.watchdog import watch
 from particles.beds import rest_ratio
 
 Result = TypeVar("Result")
-PEAKS = ("max_von_mises", "max_strain", "momentum_residual", "reaction_y")
+PEAKS = (
+    "max_von_mises", "max_strain", "momentum_residual", "reaction_y", "rotation", "local_rotation", "compression",
+)  # fmt: skip
 LONGEST_CHUNK = 2000  # steps between two looks at Ctrl-C
 
 
@@ -122,13 +124,14 @@ class Run:
         self.start = seen.balance.entries
         self.first = {name: seen.numbers.get(name, 0.0) for name in ("centroid_y",)}
         self.peaks = dict.fromkeys(PEAKS, 0.0)
+        self.warned: set[str] = set()
         saved = self.comm.bcast(self.folder.saved, root=0)
         self.resumed = saved is not None
         if saved is not None:
             self.model.restore(saved)
             self.start = dict(zip(self.start, saved["run.start"].tolist(), strict=True))
             self.first = dict(zip(self.first, saved["run.first"].tolist(), strict=True))
-            self.peaks = dict(zip(PEAKS, saved["run.peaks"].tolist(), strict=True))
+            self.peaks |= dict(zip(PEAKS, saved["run.peaks"].tolist(), strict=False))  # older runs kept fewer
             for name, spent in json.loads(bytes(saved["run.seconds"]).decode()).items():
                 into = self.model.seconds if name in self.model.seconds else self.seconds
                 into[name] = into.get(name, 0.0) + spent
@@ -170,6 +173,7 @@ class Run:
             seen = observe(self.model, self.start)
             for name in PEAKS:
                 self.peaks[name] = max(self.peaks[name], abs(seen.numbers.get(name, 0.0)))
+            self._warn(seen)
             self._on_root_alone(lambda: watch(self.model, seen))
             self._end_at_rest(seen)
             self._write_due(seen)
@@ -221,7 +225,7 @@ class Run:
         raise Interrupted(sentence)
 
     def _finish(self, seen: Observation) -> None:
-        self._say(cautions.after(self.built, seen, self.peaks["max_strain"]))
+        self._say(list(cautions.beyond_theory(self.built, self.peaks).values()))
         if self.comm.rank != 0:
             return
         started = time.perf_counter()
@@ -247,6 +251,12 @@ class Run:
             seed = grains.seed if grains is not None else None
             about = provenance(threads=threads, ranks=self.comm.size, seed=seed)
             write_json(self.folder.file("provenance.json"), about | {"wall_seconds": self.seconds | self.model.seconds})
+
+    def _warn(self, seen: Observation) -> None:
+        """Say once of each quantity that it leaves the theory in use, when it is first seen."""
+        beyond = cautions.beyond_theory(self.built, seen.numbers)
+        self._say([f"t = {self.model.time:g} s: {beyond[name]}" for name in beyond if name not in self.warned])
+        self.warned |= beyond.keys()
 
     def _say(self, sentences: list[str]) -> None:
         for sentence in sentences:

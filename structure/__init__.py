@@ -10,6 +10,7 @@ from structure.protocol import Structure
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
 from structure.schedules import Constant, Ramp, Sine, Table
 from structure.schemes import GeneralizedAlpha, HilberHughesTaylor, Newmark, Scheme
+from structure.validity import departures
 
 __all__ = [
     "BodyForce",
@@ -34,4 +35,5 @@ __all__ = [
     "StructureFields",
     "StructurePeaks",
     "Table",
+    "departures",
 ]

@@ -73,7 +73,7 @@ class LargeStrainTheory:
         return StructurePeaks(
             von_mises=comm.allreduce(float(stress.max(initial=0.0)), op=MPI.MAX),
             strain=comm.allreduce(float(strain.max(initial=0.0)), op=MPI.MAX),
-            least_stretch=comm.allreduce(float(least_stretch(gradient).min(initial=1.0)), op=MPI.MIN),
+            compression=comm.allreduce(float((1.0 - least_stretch(gradient)).max(initial=0.0)), op=MPI.MAX),
         )
 
     def static_displacement(self, loads: LoadVectors) -> NDArray[np.float64]:

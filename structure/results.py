@@ -47,14 +47,14 @@ class StructurePeaks:
         Largest magnitude of a principal strain, by the measure of the theory.
     local_rotation
         Largest rotation [rad] of the material against the frame of the body, where the theory has one.
-    least_stretch
-        Smallest principal stretch, where strain may be large.
+    compression
+        1 less the smallest principal stretch, at least 0, where strain may be large.
     """
 
     von_mises: float
     strain: float
     local_rotation: float | None = None
-    least_stretch: float | None = None
+    compression: float | None = None
 
 
 STRESS_AND_STRAIN = (

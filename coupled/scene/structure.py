@@ -48,8 +48,10 @@ class Initial(Table):
 _ENHANCEABLE = ("quadrilateral", 1)  # cell and order
 
 
-def _usual_element(shape: Any) -> str:
-    """Return the element that suits the cells of a shape, which may still be as it was read."""
+def _usual_element(shape: Any, theory: Any) -> str:
+    """Return the element that suits theory and cells of a shape, which may still be as it was read."""
+    if theory == "large_strain":
+        return "standard"
     given = shape if isinstance(shape, dict) else getattr(shape, "__dict__", {})
     defaults = {name: Tube.model_fields[name].default for name in ("cell", "order")}
     cells = tuple(given.get(name, default) for name, default in defaults.items())
@@ -68,6 +70,11 @@ class Structure(Table):
         description="formulation of elastic cells; 'enhanced', which lets coarse meshes bend, where it is "
         "absent and the cells are quadrilaterals of order 1, else 'standard'",
     )
+    theory: Literal["linear", "corotational", "large_strain"] | None = Field(
+        None,
+        description="theory of an elastic body: 'linear', the default, for small rotation and strain, 'corotational' "
+        "for small strain of a body that turns, 'large_strain'",
+    )
     tube: Tube | None = Field(None, description="a ring")
     beam: Beam | None = Field(None, description="a rectangle")
     placement: Placement = Field(default_factory=Placement, description="start of the centroid")
@@ -82,11 +89,12 @@ class Structure(Table):
     @model_validator(mode="before")
     @classmethod
     def _write_numerics(cls, data: Any) -> Any:
-        """Write element and scheme of an elastic structure when they are not given."""
+        """Write theory, element and scheme of an elastic structure when they are not given."""
         if isinstance(data, dict) and data.get("kind") == "elastic":
             chosen = any(data.get(name) is not None for name in SCHEMES)
             scheme = {} if chosen else {"newmark": {}}
-            return {"element": _usual_element(data.get("tube") or data.get("beam")), **scheme, **data}
+            element = _usual_element(data.get("tube") or data.get("beam"), data.get("theory"))
+            return {"theory": "linear", "element": element, **scheme, **data}
         return data
 
     @model_validator(mode="after")

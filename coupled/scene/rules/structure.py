@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 from coupled.scene.refusal import Plain, missing, refusal
 from coupled.scene.rules.loads import check_loads
+from coupled.scene.rules.theory import check_theory
 from coupled.scene.schemes import SCHEMES, Newmark
 from coupled.scene.structure import Structure
 
@@ -19,7 +20,7 @@ _NEEDED: dict[_Kind, tuple[str, ...]] = {
     "free_rigid": ("density",),
 }
 _ALLOWED: dict[_Kind, tuple[str, ...]] = {
-    "elastic": (*_NEEDED["elastic"], "rayleigh", *SCHEMES, "loads", "initial"),
+    "elastic": (*_NEEDED["elastic"], "theory", "rayleigh", *SCHEMES, "loads", "initial"),
     "rigid": ("path", "density"),
     "free_rigid": ("density", "loads"),
 }
@@ -37,6 +38,7 @@ def check_structure(scene: Scene) -> None:
     _check_one_scheme(structure)
     if structure.newmark is not None:
         _check_newmark(structure.newmark)
+    check_theory(structure)
     if structure.path is not None:
         _check_path(structure.path.points)
     _check_placement(scene, structure)
@@ -51,7 +53,7 @@ def _check_kind(structure: Structure) -> None:
     for name in _OPTIONAL:
         if name not in _ALLOWED[kind] and getattr(structure, name) not in (None, ()):
             value = getattr(structure, name)
-            shown = value if isinstance(value, float) else Plain("...")
+            shown = value if isinstance(value, float | str) else Plain("...")
             raise refusal(
                 f"structure.{name}",
                 shown,

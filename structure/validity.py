@@ -1,0 +1,67 @@
+"""How far each theory goes, and what is said of a result beyond that."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from structure.theory import TheoryName
+
+
+class Limit(NamedTuple):
+    """A quantity, the largest magnitude up to which a theory is to be trusted, and what is said above it."""
+
+    quantity: str
+    largest: float
+    said: str
+
+
+SMALL_STRAIN = Limit(
+    "max_strain", 0.02, "largest strain {:.3g} leaves the small-strain theory (up to {:g}): distrust the stresses"
+)
+LIMITS: dict[TheoryName, tuple[Limit, ...]] = {
+    "linear": (
+        SMALL_STRAIN,
+        Limit(
+            "rotation",
+            0.1,
+            "the structure has turned by {:.3g} rad, which the linear theory does not follow (up to {:g}): "
+            'take theory "corotational"',
+        ),
+    ),
+    "corotational": (
+        SMALL_STRAIN,
+        Limit(
+            "local_rotation",
+            0.1,
+            "parts of the structure have turned by {:.3g} rad against its frame, which the corotational theory does "
+            'not follow (up to {:g}): take theory "large_strain"',
+        ),
+    ),
+    "large_strain": (
+        Limit(
+            "compression",
+            0.4,
+            "the material is compressed by {:.3g} of its length, where the St Venant-Kirchhoff law softens (reliable "
+            "up to {:g}): distrust the result",
+        ),
+    ),
+}
+
+
+def departures(theory: TheoryName, numbers: Mapping[str, float]) -> dict[str, str]:
+    """Sentences, by quantity, on numbers that leave the range of a theory.
+
+    Parameters
+    ----------
+    theory
+        The theory in use.
+    numbers
+        "rotation" [rad] of the body, "max_strain", "local_rotation" [rad], "compression"; those that are
+        missing are not looked at.
+    """
+    return {
+        limit.quantity: limit.said.format(abs(numbers[limit.quantity]), limit.largest)
+        for limit in LIMITS[theory]
+        if abs(numbers.get(limit.quantity, 0.0)) > limit.largest
+    }
