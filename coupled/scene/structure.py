@@ -64,7 +64,9 @@ class Structure(Table):
     kind: Literal["elastic", "rigid", "free_rigid"] = Field(description="mechanical model")
     density: Positive | None = Field(None, description="mass per volume [kg/m3]")
     youngs_modulus: Positive | None = Field(None, description="Young's modulus E [Pa]")
-    poissons_ratio: Annotated[Number, Field(gt=-1, lt=0.5)] | None = Field(None, description="Poisson's ratio nu [-]")
+    poissons_ratio: Annotated[Number, Field(gt=-1, lt=0.5)] | None = Field(
+        None, description="Poisson's ratio nu [-], tested to 0.4999; no incompressible solid"
+    )
     element: Literal["standard", "enhanced"] | None = Field(
         None,
         description="formulation of elastic cells; 'enhanced', which lets coarse meshes bend, where it is "

@@ -143,7 +143,7 @@ BAD: dict[str, Case] = {
         TUBE,
         {"structure.poissons_ratio": 0.5},
         "structure.poissons_ratio",
-        ("less than 0.5",),
+        ("less than 0.5", "incompressible"),
     ),
     "auxetic beyond reason": (
         TUBE,
@@ -184,6 +184,18 @@ BAD: dict[str, Case] = {
         "structure.tube.inner_radius",
         ("outer_radius = 0.02",),
     ),
+    "tube without thickness": (
+        TUBE,
+        {"structure.tube.inner_radius": 0.02},
+        "structure.tube.inner_radius",
+        ("less than outer_radius = 0.02",),
+    ),
+    "beam without thickness": (
+        BEAM_ON_ROW,
+        {"structure.beam.height": 0.0},
+        "structure.beam.height",
+        ("greater than 0", "[m]"),
+    ),
     "load on a boundary of another shape": (
         TUBE,
         {"structure.loads.0.boundary": "top"},
@@ -207,6 +219,12 @@ BAD: dict[str, Case] = {
         {"structure.newmark": {"beta": 1 / 6}},
         "structure.newmark.beta",
         ("0.25",),
+    ),
+    "newmark that feeds energy": (
+        TUBE,
+        {"structure.newmark": {"gamma": 0.49}},
+        "structure.newmark.gamma",
+        ("unstable", "0.5"),
     ),
     "structure outside the box": (
         TUBE,

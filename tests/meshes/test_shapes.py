@@ -114,6 +114,7 @@ def test_interrupt_handler_survives_the_mesher() -> None:
             "loaded_arc_degrees = 360.0",
         ),
         (lambda: meshes.beam(length=0.0, height=0.1), "length = 0.0"),
+        (lambda: meshes.beam(length=1.0, height=0.0), "height = 0.0"),
         (lambda: meshes.beam(length=1.0, height=float("nan")), "height = nan"),
         (lambda: meshes.beam(length=1.0, height=0.1, along=2.5), "along = 2.5"),
         (lambda: meshes.beam(length=1.0, height=0.1, cell="hexagon"), "cell = 'hexagon'"),

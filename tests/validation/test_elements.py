@@ -4,6 +4,7 @@ Writes `docs/validation/elements.md` and its picture. References are closed form
 fine that what is left is far below the errors shown.
 """
 
+import textwrap
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -163,9 +164,10 @@ INTRODUCTION = """# The elements compared
 
 Written by `make validate`.
 
-Plane strain, E = 70 GPa, rho = 2700 kg/m3. "Q4 enhanced" is `structure.element = "enhanced"`. Order 2 has cells of
-twice the size, hence about as many unknowns. The 80 cells of the beam and the 60 of the ring are the source's meshes. Times
-are of one run on two cores that had other work; "to build" is matrices and factors, with compiled forms at hand.
+Plane strain, E = 70 GPa, rho = 2700 kg/m3. "Q4 enhanced" is `structure.element = "enhanced"`, which quadrilaterals of
+order 1 are unless a scene says otherwise. Order 2 has cells of twice the size, hence about as many unknowns. The 80
+cells of the beam and the 60 of the ring are the source's meshes. Times are of one run on two cores that had other
+work; "to build" is matrices and factors, with compiled forms at hand.
 References:
 
 - frequencies and the closing of the thick ring: Q9 on a mesh at least twice as fine as any here (near nu = 0.5 it is
@@ -212,20 +214,27 @@ def table(names: tuple[str, ...], rows: dict[Kind, list[Result]]) -> list[str]:
     return [*lines, ""]
 
 
-def draw(panels: dict[str, dict[Kind, list[Result]]]) -> None:
-    figure, axes = plt.subplots(2, len(panels), figsize=(4 * len(panels), 7), sharey="col", layout="constrained")
-    for column, (title, rows) in zip(axes.T, panels.items()):
-        for kind, found in rows.items():
-            errors = [100 * abs(r.errors[0]) for r in found]
-            column[0].loglog([r.unknowns for r in found], errors, kind.line, label=kind.name)
-            column[1].loglog([1e6 * r.step for r in found], errors, kind.line, label=kind.name)
-        column[0].set(title=title, xlabel="unknowns", ylabel="error [%]")
-        column[1].set(xlabel="time of a step [us]", ylabel="error [%]")
-        for axis in column:
+Panels = dict[str, dict[Kind, list[Result]]]
+
+
+def draw(common: Panels, soft: Panels) -> None:
+    """Error against unknowns and time, and against unknowns near nu = 0.5, case by case."""
+    figure, axes = plt.subplots(3, len(common), figsize=(4 * len(common), 10), sharey="col", layout="constrained")
+    for column, (title, rows) in zip(axes.T, common.items(), strict=True):
+        for axis, panel in zip(column, (rows, rows, soft[title]), strict=True):
+            against_time = axis is column[1]
+            for kind, found in panel.items():
+                errors = [100 * abs(r.errors[0]) for r in found]
+                costs = [1e6 * r.step if against_time else r.unknowns for r in found]
+                axis.loglog(costs, errors, kind.line, label=kind.name)
+            poisson = SOFT if axis is column[2] else COMMON
+            label = "time of a step [us]" if against_time else "unknowns"
+            axis.set(xlabel=f"{label}, nu = {poisson:g}", ylabel="error [%]")
             axis.grid(True, which="both", alpha=0.3)
             axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
             axis.xaxis.set_major_formatter(ScalarFormatter())
             axis.xaxis.set_minor_formatter(NullFormatter())
+        column[0].set_title(textwrap.fill(title, 34))
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=len(KINDS))
     figure.savefig(PAGE.with_suffix(".png"), dpi=110)
     plt.close(figure)
@@ -282,15 +291,16 @@ def stress_section() -> list[str]:
 @pytest.mark.validate
 def test_elements() -> None:
     lines = [INTRODUCTION]
-    panels: dict[str, dict[Kind, list[Result]]] = {}
+    panels: tuple[Panels, Panels] = ({}, {})
     for title, (case, names, sizes, fine) in CASES.items():
         exact = reference(case, fine, COMMON)
         rows = {kind: results(case, exact, kind, sizes, COMMON) for kind in KINDS}
         lines += [f"## {title}", "", f"nu = {COMMON:g}.", "", *table(names, rows)]
-        panels[title.rpartition(", ")[0] + ":\n" + names[0]] = rows
         exact = reference(case, fine, SOFT)
         soft = {kind: results(case, exact, kind, sizes[:3], SOFT) for kind in KINDS}
         lines += [f"nu = {SOFT:g}.", "", *table(names, soft)]
+        for panel, found in zip(panels, (rows, soft), strict=True):
+            panel[f"{title.rpartition(', ')[0]}: {names[0]}"] = found
         # the purpose of the enhanced cell: right where the standard one is not, at every Poisson's ratio
         for enhanced, standard in ((rows[ENHANCED], rows[Q4]), (soft[ENHANCED], soft[Q4])):
             for one, other in zip(enhanced, standard):
@@ -298,6 +308,6 @@ def test_elements() -> None:
         if case is thick_ovalisation:
             ratio = exact[0] / (np.pi / 4 - 2 / np.pi)
             lines += [f"This ring (h/R = 0.22) closes {ratio:.3f} times as far as a thin one.", ""]
-    draw(panels)
+    draw(*panels)
     lines += stress_section()
     PAGE.write_text("\n".join(lines))
