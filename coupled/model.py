@@ -23,9 +23,10 @@ class Model:
 
     - predicted (default): the glued grains move to the predicted boundary ``u + H v + H^2 a/2``
       while the grains take their `substeps`; the contact force goes to the nodes at the new time;
-      the structure steps. With sub-cycling the force is the mean of the window, which belongs to
-      its middle; the last two means are extrapolated to its end, ``f + (f - f_old)/2``. Given to
-      the nodes as it is, the mean lags by H/2 and feeds energy into the interface at any step.
+      the structure steps. With k substeps the force is the mean of those at ``H/k, 2 H/k ... H``, which
+      belongs to ``(k + 1)/(2 k) H``; the last two means are extrapolated to the window's end,
+      ``f + (k - 1)/(2 k) (f - f_old)``. Given to the nodes as it is, the mean lags and feeds energy into
+      the interface at any step.
     - lagged (the source's order): the structure steps with the forces of the last window; the glued
       grains move to where it went while the grains take their substeps.
 
@@ -96,8 +97,8 @@ class Model:
         started, before = time.perf_counter(), self.nodal_force
         self._move_grains(self.structure.predict(self.window))
         moved = time.perf_counter()
-        mean = self.substeps > 1
-        self.structure.advance(1.5 * self.nodal_force - 0.5 * before if mean else self.nodal_force)
+        force, ahead = self.nodal_force, 0.5 * (self.substeps - 1) / self.substeps
+        self.structure.advance(force + ahead * (force - before) if ahead else force)
         self.seconds["structure"] += time.perf_counter() - moved
         self.seconds["exchange"] += moved - started
 
