@@ -3,7 +3,12 @@
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+from ways import Way
+
 from coupled.build import Built, build
+from coupled.model import Model
 from coupled.scene import Scene, load_scene
 
 
@@ -70,3 +75,32 @@ def discs_on_free_beam(
         "interface": {"per_facet": 3, "boundaries": ["outer"], "largest_stiffness_ratio": 2.0} | (interface or {}),
     }
     return build(Scene.model_validate(tables))
+
+
+def on_row(
+    way: Way,
+    *,
+    window: float,
+    structure: dict[str, Any],
+    contact: dict[str, Any],
+    rows: Sequence[NDArray[np.float64]],
+    radius: float = 4.1e-3,
+    per_facet: int = 3,
+) -> Model:
+    """A beam whose lower face, from (0, 0) to the right, just touches fixed discs.
+
+    `rows` are the evenly spaced abscissae [m] of the discs in each row; `window` [s] is the step of the structure; glued grains and discs have the same radius [m].
+    """
+    interface = way.table(boundary="bottom", per_facet=per_facet, radius=radius)
+    depth = -way.standoff(radius) - radius
+    beam = structure["beam"]
+    place = {"placement": {"x": beam["length"] / 2, "y": beam["height"] / 2}}
+    tables = {
+        "title": "A beam on a row of fixed discs",
+        "time": {"duration": 1.0, "step": window / interface.get("substeps", 1)},
+        "structure": structure | place,
+        "interface": interface,
+        "contact": contact,
+        "rows": [{"start": (x[0], depth), "end": (x[-1], depth), "count": len(x), "radius": radius} for x in rows],
+    }
+    return build(Scene.model_validate(tables)).model

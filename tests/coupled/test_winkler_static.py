@@ -9,11 +9,12 @@ independent solution on the same mesh are second order in displacement/diameter 
 import numpy as np
 import pytest
 from independent_beam import IndependentBeam, Rest
+from small_models import on_row
 from ways import GLUED, WAYS, Way
 
 from coupled.build import build
 from coupled.model import Model
-from coupled.scene import Scene, load_scene
+from coupled.scene import load_scene
 
 LENGTH, HEIGHT, ALONG, ACROSS = 1.0, 0.05, 40, 2
 YOUNG, POISSON, K_N, K_T, FRICTION, RADIUS = 70e9, 0.35, 1.97e7, 9.86e5, 0.8, 4.1e-3
@@ -30,17 +31,19 @@ Load = dict[str, object]
 def settled(
     way: Way, loads: list[Load], *, springs: np.ndarray = SPRINGS, per_facet: int = 3, duration: float = SETTLED
 ) -> Model:
-    """The scene `winkler_beam` under other loads, met in one of the `ways`, after `duration` [s] at rest."""
-    tables = load_scene("winkler_beam").model_dump(exclude_none=True)
-    tables["structure"]["loads"] = [load | {"schedule": {"kind": "ramp", "over": RAMP}} for load in loads]
-    tables["structure"]["rayleigh"]["stiffness_factor"] = MATERIAL_DAMPING
-    tables["contact"] |= DASHPOTS
-    tables["interface"] = way.table(boundary="bottom", per_facet=per_facet, radius=RADIUS)
-    tables["time"]["step"] = WINDOW / tables["interface"].get("substeps", 1)
-    depth = -way.standoff(RADIUS) - RADIUS
-    ends = {"start": (springs[0], depth), "end": (springs[-1], depth)}
-    tables["rows"] = [{"radius": RADIUS, "count": len(springs)} | ends]
-    model = build(Scene.model_validate(tables)).model
+    """The beam of `winkler_beam` under other loads, met in one of the `ways`, after `duration` [s] at rest."""
+    table = load_scene("winkler_beam").model_dump(exclude_none=True)
+    ramped = [load | {"schedule": {"kind": "ramp", "over": RAMP}} for load in loads]
+    damped = {"rayleigh": {"stiffness_factor": MATERIAL_DAMPING}, "loads": ramped}
+    model = on_row(
+        way,
+        window=WINDOW,
+        structure=table["structure"] | damped,
+        contact=table["contact"] | DASHPOTS,
+        rows=[springs],
+        radius=RADIUS,
+        per_facet=per_facet,
+    )
     model.advance(round(duration / WINDOW))
     return model
 
