@@ -15,9 +15,11 @@ from structure.conserving import ConservingStepper
 from structure.discrete import DiscreteBody
 from structure.frame import Complex, Pose, as_complex, wrapped
 from structure.material import Rayleigh
+from structure.mixing import Mixing
 from structure.solver import factorise
 
 SWEEPS = 50
+SLOW, DEPTH = 0.05, 2  # corrections that shrink more slowly are mixed with the last ones
 EPSILON = sys.float_info.epsilon
 NOISE = 1e5  # corrections of so many times the round-off that shrink no more are round-off of the stiffness
 
@@ -44,7 +46,8 @@ class CorotationalStepper(ConservingStepper):
     as ``x_m . R_m M X = cos(D/2) (rho0 + rho1)/2`` the moment of F about the centroid is zero.
 
     The step is solved by corrections with ``(2/dt^2 + c_a/dt) M + (1/2 + c_b/dt) K``, factorised
-    once and turned into the frame: what this leaves out is of the size of the strain.
+    once and turned into the frame: what this leaves out is of the size of half the turn of the step and
+    of w over the size of the body; where that is not small the corrections are mixed (`Mixing`).
     """
 
     def __init__(
@@ -63,6 +66,7 @@ class CorotationalStepper(ConservingStepper):
         same = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
         effective.axpy(0.5 + self._stiffness_factor / dt, stiffness, structure=same)
         self._correct = factorise(effective)
+        self._mixing = Mixing(DEPTH, body.totals)
         self._strained_by = np.zeros(body.unknowns // 2, dtype=np.complex128)
 
     def pose(self) -> Pose:
@@ -87,17 +91,18 @@ class CorotationalStepper(ConservingStepper):
         ahead = self._dt * self.velocity
         turned = cmath.exp(1j * (now.angle + self._dt * self._frame.spin(now, self.velocity) / 2))
         last = 0.0
+        self._mixing.forget()
         for _ in range(SWEEPS):
             after = self._pose_after(ahead + excess)
             left = self._unbalanced(excess) - self._internal_between(now, after)
             as_complex(self._right)[:] = as_complex(left) / turned
             self._correct(self._right_vector, self._left_vector)
             correction = (as_complex(self._left) * turned).view(np.float64)
-            excess += correction
             size, round_off = self._sizes(correction, excess)
             if not math.isfinite(size):
                 break
             shrinking = min(1.0, size / last) if last else 1.0
+            excess += correction if shrinking < SLOW else self._mixing.step(excess, correction)
             if size * shrinking <= round_off or (shrinking > 0.5 and size <= NOISE * round_off):
                 if self._stiffness_factor:
                     self._strained_by = self._pose_after(ahead + excess).local - now.local
