@@ -147,14 +147,16 @@ def _chain(sides: Integers) -> Integers:
 
 
 def _first_crossing(points: Floats, chain: Integers) -> tuple[int, int] | None:
-    """Two pieces (start, end) without a common node that cross or touch, if there are any."""
+    """Two pieces (start, end) without a common node that cross or touch, if there are any; a sweep along the body."""
     begin, end = points[chain[:, 0]], points[chain[:, 1]]
     low, high = np.minimum(begin, end), np.maximum(begin, end)
-    order = np.argsort(low[:, 0], kind="stable")
-    last = np.searchsorted(low[order, 0], high[order, 0], side="right")
+    along = int(np.argmax(np.ptp(points, axis=0)))
+    across = 1 - along
+    order = np.argsort(low[:, along], kind="stable")
+    last = np.searchsorted(low[order, along], high[order, along], side="right")
     for rank, one in enumerate(order.tolist()):
         others = order[rank + 1 : last[rank]]
-        near = (low[others, 1] <= high[one, 1]) & (high[others, 1] >= low[one, 1])
+        near = (low[others, across] <= high[one, across]) & (high[others, across] >= low[one, across])
         others = others[near & ~np.isin(chain[others], chain[one]).any(axis=1)]
         apart = _side(begin[one], end[one], begin[others]) * _side(begin[one], end[one], end[others]) > 0.0
         apart |= _side(begin[others], end[others], begin[one]) * _side(begin[others], end[others], end[one]) > 0.0
