@@ -14,6 +14,7 @@ from structure.boundary import agreed_force, boundary_exchange
 from structure.discrete import DiscreteBody
 from structure.elements import ElementName
 from structure.errors import StepError, StructureError
+from structure.follower_limit import require_followers_fit
 from structure.load_vectors import LoadVectors
 from structure.loads import Load
 from structure.material import PlaneStrain, Rayleigh
@@ -79,6 +80,8 @@ class ElasticStructure:
         self._stepper = self._theory.stepper
         self._exchange = boundary_exchange(self._body.nodes, mesh.outer_nodes, self.comm)
         self._loads, self._beta = LoadVectors(self._body, loads), scheme.beta
+        if self._loads.followers:
+            require_followers_fit(self._body, self._loads.followers, theory, self._beta * self.time_step**2)
         self._mass_solve: Callable[[PETSc.Vec, PETSc.Vec], None] | None = None
         self._ledger = ledger
         self.set_initial()
@@ -283,7 +286,7 @@ class ElasticStructure:
         """Newmark's ``u + dt v + (1/2 - beta) dt^2 a`` [m], the shape that a pressure follows.
 
         It differs from the shape at the end of the step by ``beta dt^2 a``: to the equation of motion
-        that is a change of the mass matrix, which feeds no energy.
+        that is a change of the mass matrix, which feeds no energy (`follower_limit`).
         """
         stepper, dt = self._stepper, self.time_step
         return stepper.displacement + dt * stepper.velocity + (0.5 - self._beta) * dt**2 * stepper.acceleration

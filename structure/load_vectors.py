@@ -69,13 +69,8 @@ class LoadVectors:
         return total
 
     def at_full_strength(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Nodal forces (owned unknowns,) and resultant (2,) [N/m] on the reference shape, every factor 1."""
-        force, resultant = self.vectors.sum(axis=0), self._resultants.sum(axis=0)
-        for follower in self.followers:
-            own = follower.force()
-            follower.add(own, force)
-            resultant = resultant + own.sum(axis=0)
-        return force, resultant
+        """Nodal forces (owned unknowns,) and resultant (2,) [N/m] of fixed direction, every factor 1."""
+        return self.vectors.sum(axis=0), self._resultants.sum(axis=0)
 
 
 def _vector(body: DiscreteBody, load: Load) -> NDArray[np.float64]:
