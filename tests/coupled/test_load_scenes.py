@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
-from bad_scenes import TUBE, Case, changed, require_refusal
+from bad_scenes import GONE, TUBE, Case, changed, require_refusal
 
 import structure as fem
 from coupled.build import build
@@ -116,6 +116,12 @@ BAD: dict[str, Case] = {
         {FIRST.rpartition(".")[0]: [{"kind": "pressure", "boundary": "top", "pressure": 1.0}]},
         f"{FIRST}.boundary",
         ("inner", "loaded_arc", "free_arc"),
+    ),
+    "pressure that follows a body that the theory does not": (
+        TUBE,
+        {FIRST.rpartition(".")[0]: [{"kind": "pressure", "boundary": "inner", "pressure": 1.0, "follows": True}]},
+        f"{FIRST}.follows",
+        ("true", 'structure.theory = "corotational"', "follows = false"),
     ),
     "pressure without size": (
         TUBE,
@@ -253,6 +259,23 @@ def test_a_run_is_not_resumed_with_another_table(tmp_path: Path) -> None:
     (tmp_path / "load.csv").write_text("0,0\n0.004,2\n")
     with pytest.raises(LeitoError, match="schedule.factors"):
         run_scene(load_scene(path), out=tmp_path / "run", resume=True, threads=1, progress=False)
+
+
+@pytest.mark.parametrize("kind", ["corotational", "large_strain", "free_rigid"])
+def test_a_pressure_follows_what_the_scene_turns(kind: str, tmp_path: Path) -> None:
+    """The push on the upper arc stays square to it while a pair of forces turns the tube."""
+    pair = [{"kind": "point", "point": [x, 0.0], "force": [0.0, 2e3 * x]} for x in (0.05, -0.05)]
+    load = {"kind": "pressure", "boundary": "loaded_arc", "pressure": 100.0, "follows": True}
+    own = {"structure.theory": kind}
+    if kind == "free_rigid":
+        own = {"structure.kind": kind, "structure.youngs_modulus": GONE, "structure.poissons_ratio": GONE}
+    body = build(load_scene(written(tmp_path, [load, *pair], **own))).model.structure
+    for _ in range(60):
+        body.advance(np.zeros_like(body.polyline.points))
+    angle, push = body.mean_rotation(), 100.0 * 2 * 0.05 * np.sin(np.pi / 3)
+    assert angle > 0.5
+    # the ring under its pair of forces is no circle: by the strain, 1e-5
+    np.testing.assert_allclose(body.external_force(), push * np.array([np.sin(angle), -np.cos(angle)]), rtol=1e-4)
 
 
 def test_points_count_from_the_centroid(tmp_path: Path) -> None:

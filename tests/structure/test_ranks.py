@@ -17,16 +17,20 @@ line = tube.outer_polyline
 comm = tube.domain.comm
 material = PlaneStrain(youngs_modulus=70e7, poissons_ratio=0.35, density=2700.0)
 loads = [BoundaryLoad(boundary="loaded_arc", total_force=(0.0, -100.0), schedule=Ramp(over=2e-3)),
-         PointLoad(point=(0.0, -0.05), force=(0.0, 90.0)), BodyForce(acceleration=(1.0, -9.81))]
+         PointLoad(point=(0.0, -0.05), force=(0.0, 90.0)), BodyForce(acceleration=(1.0, -9.81)),
+         PointLoad(point=(0.0306, 0.0317), force=(5.0, 0.0), schedule=Sine(frequency=300.0, offset=0.5)),
+         Pressure(boundary="inner", pressure=3e3, schedule=Table(times=(0.0, 1e-3, 4e-3), factors=(0.0, 1.0, -1.0)))]
+following = [*loads, Pressure(boundary="inner", pressure=4e3, follows=True),
+             Pressure(boundary="free_arc", pressure=500.0, follows=True, schedule=Ramp(over=3e-3))]
 damping = Rayleigh(mass_factor=0.5, stiffness_factor=1e-5)
 body = ElasticStructure(
     tube, material=material, time_step=4e-5, damping=damping, loads=loads, element="standard")
 bent = ElasticStructure(
     tube, material=material, time_step=4e-5, damping=damping, loads=loads, element="enhanced")
-free = FreeRigid(tube, density=2700.0, time_step=4e-5, loads=loads)
+free = FreeRigid(tube, density=2700.0, time_step=4e-5, loads=following)
 # Two that turn by 1.8 rad.
 frame, large = (ElasticStructure(
-    tube, material=material, time_step=4e-5, damping=Rayleigh(stiffness_factor=1e-5), loads=loads, theory=theory)
+    tube, material=material, time_step=4e-5, damping=Rayleigh(stiffness_factor=1e-5), loads=following, theory=theory)
     for theory in ("corotational", "large_strain"))
 for spun in (frame, large):
     spun.set_initial(velocity=300.0 * np.column_stack([-tube.points[:, 1], tube.points[:, 0]]))

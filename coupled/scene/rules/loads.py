@@ -16,6 +16,13 @@ def check_loads(structure: Structure) -> None:
             raise refusal(
                 f"{key}.boundary", load.boundary, f"is no boundary of this shape; {nearest(load.boundary, known)}"
             )
+        if isinstance(load, PressureLoad) and load.follows and structure.theory == "linear":
+            raise refusal(
+                f"{key}.follows",
+                True,
+                'needs a theory that follows the body; give structure.theory = "corotational" or "large_strain", or '
+                "follows = false",
+            )
         if isinstance(load.schedule, Sine):
             _check_sine(f"{key}.schedule", load.schedule)
         if isinstance(load.schedule, Rows):
