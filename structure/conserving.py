@@ -22,9 +22,9 @@ LARGEST_TURN = math.pi / 2  # of the body within a step
 class ConservingStepper(ABC):
     """Average acceleration with an internal force that is a discrete gradient of the strain energy.
 
-    ``d = dt (v0 + v1)/2``, ``M (v1 - v0)/dt + c_a M d/dt + F = (f0 + f1)/2``, where F depends on both
-    ends of the step such that ``F . d`` is the change of strain energy plus the loss of the step,
-    and F has neither resultant nor moment about the mean positions. Hence energy, momentum and
+    ``d = dt (v0 + v1)/2``, ``M (v1 - v0)/dt + c_a M d/dt + f_int = (f0 + f1)/2``, where f_int depends on both
+    ends of the step such that ``f_int . d`` is the change of strain energy plus the loss of the step,
+    and f_int has neither resultant nor moment about the mean positions. Hence energy, momentum and
     angular momentum are kept to the accuracy of the solution, for a step of any length (Simo and
     Tarnow 1992). For small motion this is Newmark's (1/4, 1/2). The acceleration, which only
     `predict` uses, is that of equilibrium at the end of the step, as it is there: the recurrence
@@ -112,7 +112,7 @@ class ConservingStepper(ABC):
         return float(self.velocity @ self._weighed(self.velocity)) / 2
 
     def _balance_acceleration(self) -> None:
-        """``M a = f - c_a M v - F`` at the present time."""
+        """``M a = f - c_a M v - f_int`` at the present time."""
         right = self.force - self._internal_now()
         if self._mass_factor:
             right -= self._mass_factor * self._weighed(self.velocity)

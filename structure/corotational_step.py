@@ -39,11 +39,11 @@ class CorotationalStepper(ConservingStepper):
     With t_m the mean angle of a step, D the turn within it, ``s = K (w_m + c_b (w1 - w0)/dt)`` and
     x_m the mean positions relative to the centroid,
 
-        F = cos(D/2) R_m s + [2/(rho0 + rho1)] (s . R_m^T J^T x_m) R_m M J X.
+        f_int = cos(D/2) R_m s + [2/(rho0 + rho1)] (s . R_m^T J^T x_m) R_m M J X.
 
     As ``w1 - w0 = cos(D/2) R_m^T d + 2 sin(D/2) R_m^T J^T x_m`` and
-    ``sin(D/2) = d . R_m M J X/(rho0 + rho1)``, ``F . d = s . (w1 - w0)`` for a step of any length, and
-    as ``x_m . R_m M X = cos(D/2) (rho0 + rho1)/2`` the moment of F about the centroid is zero.
+    ``sin(D/2) = d . R_m M J X/(rho0 + rho1)``, ``f_int . d = s . (w1 - w0)`` for a step of any length, and
+    as ``x_m . R_m M X = cos(D/2) (rho0 + rho1)/2`` the moment of f_int about the centroid is zero.
 
     The step is solved by corrections with ``(2/dt^2 + c_a/dt) M + (1/2 + c_b/dt) K``, factorised
     once and turned into the frame: what this leaves out is of the size of half the turn of the step and
@@ -138,7 +138,7 @@ class CorotationalStepper(ConservingStepper):
         return self._internal(local, middle)
 
     def _internal(self, local: Complex, middle: Middle) -> NDArray[np.float64]:
-        """F [N/m] of the docstring for the strain of `local`, (owned unknowns,)."""
+        """f_int [N/m] of the class for the strain of `local`, (owned unknowns,)."""
         stressed = self._stressed(local)
         turned = cmath.exp(1j * middle.angle)
         moment = float(np.vdot(stressed, middle.arms / turned).imag)

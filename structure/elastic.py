@@ -28,10 +28,9 @@ STATE_FIELDS = ("displacement", "velocity", "acceleration")
 
 
 class ElasticStructure:
-    """Linear elastic body without supports, ``M a + C v + K u = loads + boundary forces``.
+    """Elastic body without supports, ``M a + C v + f_int(u) = loads + boundary forces``; see `Structure`.
 
-    Small strain and small rotation about the reference shape: a body that turns as a whole by
-    more than a few degrees is stressed by the turn; watch `mean_rotation`.
+    What f_int is, and how far the body may turn and stretch, is said by its theory.
 
     Parameters
     ----------
@@ -44,6 +43,10 @@ class ElasticStructure:
     element : {"standard", "enhanced"}, optional
         Displacements alone, or, for quadrilaterals of order 1, strains enhanced so that a coarse mesh
         bends as it should, also near nu = 0.5. Absent: enhanced where the cells allow it.
+    theory : {"linear", "corotational", "large_strain"}
+        Small strain and rotation about the reference shape, ``f_int = K u`` (`LinearTheory`); small strain in a
+        frame that turns with the body (`CorotationalTheory`); St Venant-Kirchhoff (`LargeStrainTheory`).
+        The last two have a step of their own, which keeps energy and angular momentum.
     ledger : bool
         Keep the sums of work and loss that `energies` reports.
 

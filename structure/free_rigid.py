@@ -33,7 +33,7 @@ class FreeRigid:
     arc makes the trapezoidal work of the nodal forces equal to the change of kinetic energy
     exactly. Order 2. A pressure that follows turns with the body: its moment about the centroid stays,
     ``I (w1 - w) = dt T``, its resultant turns; both do the work that the motion takes up. The interface
-    is that of `ElasticStructure`.
+    is `Structure`.
 
     Parameters
     ----------

@@ -29,9 +29,9 @@ NOISE = 1e-14  # of the displacement: round-off
 class LargeStrainStepper(ConservingStepper):
     """``S = lam tr(E) 1 + 2 mu E`` of the Green-Lagrange strain E, kept in balance at mid-step.
 
-    ``F = int (F_m S_m) : grad(w)``, ``F_m = (F0 + F1)/2``, ``S_m = C : ((E0 + E1)/2 + c_b (E1 - E0)/dt)``.
-    As ``E1 - E0 = sym(F_m^T grad d)``, ``F . d`` is the change of ``int E : C : E/2`` plus the loss
-    ``c_b (E1 - E0) : C : (E1 - E0)/dt``; as S_m is symmetric, F has no moment about the mean
+    ``f_int = int (F_m S_m) : grad(w)``, ``F_m = (F0 + F1)/2``, ``S_m = C : ((E0 + E1)/2 + c_b (E1 - E0)/dt)``.
+    As ``E1 - E0 = sym(F_m^T grad d)``, ``f_int . d`` is the change of ``int E : C : E/2`` plus the loss
+    ``c_b (E1 - E0) : C : (E1 - E0)/dt``; as S_m is symmetric, f_int has no moment about the mean
     positions. The stiffness part of the damping is a Kelvin-Voigt solid's, seen in the material.
     The mesh's own quadrature (that of the linear stiffness) is used for all.
 

@@ -17,9 +17,8 @@ from structure.rigid_motion import NO_STRESS, RigidMotion, rigid_fields
 class PrescribedRigid:
     """Rigid body whose displacement is piecewise linear in time; it never turns.
 
-    Attributes are those of `ElasticStructure`.
     At a way point the velocity is that of the piece ahead; after the last one the body rests.
-    The interface is that of `ElasticStructure`.
+    The interface is `Structure`.
 
     Parameters
     ----------

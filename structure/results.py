@@ -15,7 +15,7 @@ class StructureEnergies:
     Attributes
     ----------
     kinetic, strain
-        ``v . M v/2`` and ``u . K u/2``.
+        ``v . M v/2`` and ``u . K u/2``, or the strain energy of the theory in use.
     rayleigh_loss
         Lost in Rayleigh damping since the start.
     external_work
