@@ -17,9 +17,9 @@ class PressedBoundary:
 
     A facet runs along ``x(s) = sum N_b(s) x_b`` with the solid to its left, so that ``n ds = (dy, -dx)``
     and ``f_a = -p int N_a n ds = p (-sum S_ab y_b, sum S_ab x_b)``, ``S_ab = int N_a dN_b/ds ds``, summed
-    over the facets: linear in the places of the nodes, whatever their displacement. On a closed
-    boundary ``sum x_a . S_ab ...`` is symmetric, the Hessian of the enclosed area A: the trapezoidal work
-    of a constant follower pressure between two shapes is ``-p`` times the change of the area of the solid.
+    over the facets: linear in the places of the nodes, whatever their displacement. On a closed boundary S is
+    antisymmetric and f the gradient of ``-p A``, A the enclosed area on the solid's side: the trapezoidal
+    work of a constant pressure between two shapes is ``-p`` times the change of A.
 
     Attributes
     ----------

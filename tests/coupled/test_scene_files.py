@@ -15,6 +15,7 @@ NAMES = (
     "beam_vibration",
     "elastic_beam",
     "elastic_tube",
+    "pulsing_tube",
     "rigid_beam",
     "rigid_tube",
     "rigid_tube_trench",
