@@ -68,9 +68,10 @@ def test_work_is_pressure_times_area(theory: str) -> None:
     """A ring is pressed from outside: W = -p (A1 - A0), but for terms of dt^2 that do not add up.
 
     The pressure acts on ``x - dt^2/4 a``, but at the start on x. With u' = dt mean(v) and v' = dt mean(a) the
-    trapezoidal work is ``-p [A(x)]`` plus ``p dt^2/4 [A(v)]``, A(v) the area of the polygon of velocities, less the start's
-    ``p dt^2/8`` times the mixed area of a0 and the first increment, ``A(a0 + u') - A(a0) - A(u')``. Where the internal force
-    of a step is not the mean of its ends', at large strain, that is so up to the square of the strain of a step.
+    trapezoidal work is ``-p [A(x)]`` plus ``p dt^2/4 [A(v)]``, A(v) the area of the polygon of velocities, less the
+    start's ``p dt^2/8`` times the mixed area of a0 and the first increment, ``A(a0 + u') - A(a0) - A(u')``. Where the
+    internal force of a step is not the mean of its ends', at large strain, that is so up to the square of the
+    strain of a step.
     """
 
     def beside(places: np.ndarray) -> np.ndarray:
