@@ -6,8 +6,11 @@ import math
 from collections.abc import Mapping
 
 from coupled.build import WARNED_SHARE, Built, stable_ratio
+from coupled.scene import Scene
 from coupled.step import StepLimits, limits_of
 from structure import departures
+
+INCOMPRESSIBLE = 0.45  # from here on stress at the nodes of standard cells, order 2 as well, is off by 20 % and more
 
 
 def before(built: Built, limits: StepLimits | None = None) -> list[str]:
@@ -38,7 +41,28 @@ def before(built: Built, limits: StepLimits | None = None) -> list[str]:
         limit = damping.overdamped_above
         hertz = limit / (2 * math.pi)
         said.append(f"Rayleigh's stiffness_factor over-damps every mode above {limit:.4g} rad/s ({hertz:.4g} Hz)")
-    return said
+    return said + _locking(scene)
+
+
+def _locking(scene: Scene) -> list[str]:
+    """A sentence on cells that are too stiff for what they are used for; numbers from docs/validation/elements.md."""
+    structure = scene.structure
+    if structure is None or structure.element != "standard":
+        return []
+    if structure.poissons_ratio > INCOMPRESSIBLE:
+        return [
+            f"structure.poissons_ratio = {structure.poissons_ratio:g} is near 0.5, where standard cells lock and show "
+            'no stress to rely on: take quadrilaterals of order 1 with structure.element = "enhanced"'
+        ]
+    if structure.shape.order == 1:
+        enhanced = (
+            "" if structure.theory == "large_strain" else 'quadrilaterals with structure.element = "enhanced" or '
+        )
+        return [
+            "standard cells of order 1 are too stiff in bending, by 9 to 21 % in the frequencies of the source's "
+            f"meshes and more as triangles: take {enhanced}order = 2"
+        ]
+    return []
 
 
 def beyond_theory(built: Built, numbers: Mapping[str, float]) -> dict[str, str]:

@@ -1,10 +1,12 @@
 """The key structure.element: written, refused where it does not fit, and handed to the structure."""
 
+import re
 from pathlib import Path
 
 import pytest
 
 from coupled.build import build
+from coupled.cautions import before
 from coupled.errors import SceneError
 from coupled.scene import Structure, Tube, dump_scene, load_scene
 
@@ -52,6 +54,28 @@ def test_element_that_does_not_fit_is_refused(name: str, overrides: list[str], w
         load_scene(name, overrides)
     assert refusal.value.key == "structure.element"
     assert all(word in str(refusal.value) for word in words)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words"),
+    [
+        (["order=2"], None),
+        (["order=1"], None),
+        (["order=1", "nu=0.4999"], None),
+        (["order=1", "element=standard"], 'order 1 are too stiff in bending.*"enhanced" or order = 2'),
+        (["order=1", "cell=triangle"], 'order 1 are too stiff in bending.*"enhanced" or order = 2'),
+        (["order=1", "theory=large_strain"], "too stiff in bending.*triangles: take order = 2"),
+        (["order=2", "nu=0.49"], "0.49 is near 0.5.*no stress to rely on"),
+        (["order=1", "cell=triangle", "nu=0.49"], "0.49 is near 0.5.*no stress to rely on"),
+    ],
+)
+def test_locking_is_told_before_a_run(overrides: list[str], words: str | None) -> None:
+    path = {"order": "beam.order", "cell": "beam.cell", "nu": "poissons_ratio"}
+    pairs = [override.split("=") for override in overrides]
+    scene = load_scene("beam_vibration", [f"structure.{path.get(key, key)}={value}" for key, value in pairs])
+    notes = before(build(scene))
+    assert len(notes) == (words is not None)
+    assert words is None or re.search(words, notes[0])
 
 
 def test_element_reaches_the_structure() -> None:

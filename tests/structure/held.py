@@ -70,3 +70,16 @@ class HeldBody:
 def both(nodes: np.ndarray) -> np.ndarray:
     """The unknowns, x and y, of nodes."""
     return np.column_stack([2 * nodes, 2 * nodes + 1]).ravel()
+
+
+def pressed(order: int, loop: np.ndarray) -> np.ndarray:
+    """Nodal forces (n_b, 2) of a pressure 1 on a closed loop: ``-int N n ds``, exact for chords and for parabolas."""
+    along = np.zeros_like(loop)
+    if order == 1:
+        ahead = np.roll(loop, -1, axis=0) - loop
+        along += (ahead + np.roll(ahead, 1, axis=0)) / 2
+    else:
+        weights = np.array([[-3, 4, -1], [-4, 0, 4], [1, -4, 3]]) / 6  # int N_i dN_j
+        facet = np.arange(0, len(loop), 2)[:, None] + np.arange(3)
+        np.add.at(along, facet % len(loop), weights @ loop[facet % len(loop)])
+    return np.column_stack([-along[:, 1], along[:, 0]])

@@ -4,7 +4,7 @@ import meshes
 import numpy as np
 import pytest
 from formulations import FORMULATIONS, NAMES
-from held import HeldBody
+from held import HeldBody, pressed
 from scipy.linalg import expm
 from scipy.optimize import brentq
 from structure import BoundaryLoad, ElasticStructure, PlaneStrain
@@ -137,19 +137,6 @@ def test_deflection_converges_to_beam_theory() -> None:
 
 
 INNER, OUTER = 0.02, 0.05
-
-
-def pressed(order: int, loop: np.ndarray) -> np.ndarray:
-    """Nodal forces (n_b, 2) of a pressure 1 on a closed loop: ``-int N n ds``, exact for chords and for parabolas."""
-    along = np.zeros_like(loop)
-    if order == 1:
-        ahead = np.roll(loop, -1, axis=0) - loop
-        along += (ahead + np.roll(ahead, 1, axis=0)) / 2
-    else:
-        weights = np.array([[-3, 4, -1], [-4, 0, 4], [1, -4, 3]]) / 6  # int N_i dN_j
-        facet = np.arange(0, len(loop), 2)[:, None] + np.arange(3)
-        np.add.at(along, facet % len(loop), weights @ loop[facet % len(loop)])
-    return np.column_stack([-along[:, 1], along[:, 0]])
 
 
 @pytest.mark.parametrize(("cell", "order", "element", "_"), FORMULATIONS, ids=NAMES)
