@@ -198,9 +198,7 @@ INNER, OUTER = 0.02, 0.05
 def pressed_cylinder(refinement: int) -> tuple[meshes.StructureMesh, np.ndarray]:
     """A thick cylinder, and the nodal forces (n_b, 2) of a pressure 1 on the facets of its outer face."""
     mesh = meshes.tube(outer_radius=OUTER, inner_radius=INNER, around=24 * refinement, layers=4 * refinement)
-    along = np.roll(mesh.outer_polyline.points, -1, axis=0) - mesh.outer_polyline.points
-    push = np.column_stack([-along[:, 1], along[:, 0]])  # into the body: the loop is counter-clockwise
-    return mesh, (push + np.roll(push, 1, axis=0)) / 2
+    return mesh, pressed(1, mesh.outer_polyline.points)
 
 
 def lames_error(refinement: int, element: str, poisson: float) -> float:
