@@ -89,7 +89,8 @@ def on_row(
 ) -> Model:
     """A beam whose lower face, from (0, 0) to the right, just touches fixed discs.
 
-    `rows` are the evenly spaced abscissae [m] of the discs in each row; `window` [s] is the step of the structure; glued grains and discs have the same radius [m].
+    `rows` are the evenly spaced abscissae [m] of the discs in each row; `window` [s] is the step of the
+    structure; glued grains and discs have the same radius [m].
     """
     interface = way.table(boundary="bottom", per_facet=per_facet, radius=radius)
     depth = -way.standoff(radius) - radius

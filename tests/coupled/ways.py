@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 INTERFACES = ("glued",)
 EXCHANGES: dict[str, dict[str, Any]] = {
@@ -11,6 +14,10 @@ EXCHANGES: dict[str, dict[str, Any]] = {
     "substeps": {"substeps": 4},
     "lagged": {"exchange": "lagged"},
 }
+
+
+# Of the error of displacements in the step of the structure, without dashpots.
+ORDERS = {"predicted": 2.0, "substeps": 2.0, "lagged": 1.0}
 
 
 @dataclass(frozen=True)
@@ -35,3 +42,15 @@ class Way:
 
 WAYS = [Way(interface, exchange) for interface in INTERFACES for exchange in EXCHANGES]
 GLUED = Way("glued", "predicted")
+
+
+def assert_order(way: Way, errors: Sequence[float]) -> None:
+    """The errors at steps that are halved fall with the order of the exchange."""
+    rate = np.log2(errors[-2] / errors[-1])
+    # Errors of 1e-4 and less show the next order not at all, the per cent of the lagged exchange by a tenth.
+    assert abs(rate - ORDERS[way.exchange]) < (0.05 if ORDERS[way.exchange] == 2.0 else 0.15)
+
+
+def relative(seen: np.ndarray, expected: np.ndarray) -> float:
+    """Root of the mean square of the error over that of what is expected."""
+    return float(np.sqrt(np.mean((seen - expected) ** 2) / np.mean(expected**2)))
