@@ -122,7 +122,7 @@ def test_ring_pressed_slowly_closes_as_a_thin_ring_under_four_forces() -> None:
     """Series of a ring that only bends: ``w = 2 N R^3/(pi E'I) sum over even n of (1 + cos 2 n a)/(n^2 - 1)^2``.
 
     N acts at angles a on both sides of the poles, each with a spring in series. Left out: the wall, h/R = 0.22,
-    closes 6 % further (240 x 16 of the independent cells), the 60 enhanced cells with forces shared by two nodes 9 % less.
+    closes 6 % further (240 x 16 of the independent cells), 60 enhanced cells with forces shared by two nodes 9 % less.
     """
     window, a, n = 2e-5, np.pi / AROUND, 2 * np.arange(1, 200)
     model = pressed(GLUED, window, element="enhanced", rayleigh={"stiffness_factor": 3e-4})
