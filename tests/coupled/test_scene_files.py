@@ -13,6 +13,7 @@ from coupled.scene import SceneError, SettledGrains, dump_scene, load_scene, shi
 NAMES = (
     "bed",
     "beam_vibration",
+    "rolling_tube",
     "elastic_beam",
     "elastic_tube",
     "pulsing_tube",

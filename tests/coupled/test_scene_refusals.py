@@ -127,6 +127,12 @@ BAD: dict[str, Case] = {
         "interface",
         ("missing", "add [interface]"),
     ),
+    "glued grains with walls alone": (
+        TUBE,
+        {"grains": GONE, "structure.placement.y": 0.1},
+        "interface",
+        ("walls meet free grains alone",),
+    ),
     "glued grains with nothing to touch": (
         BEAM_ON_ROW,
         {"rows": GONE},

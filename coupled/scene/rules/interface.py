@@ -17,11 +17,11 @@ def check_interface(scene: Scene) -> None:
     interface, structure = scene.interface, scene.structure
     if interface is None or structure is None:
         return
-    if scene.grains is None and not scene.rows and scene.box is None:
+    if scene.grains is None and not scene.rows:
         raise refusal(
             "interface",
             {},
-            "leaves its glued grains with nothing to touch; add [grains], [[rows]] or [box]",
+            "leaves its glued grains with nothing to touch, as walls meet free grains alone; add [grains] or [[rows]]",
         )
     shape = structure.shape
     _check_boundaries(interface, shape)
