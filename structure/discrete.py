@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from meshes import StructureMesh
 from structure import compat, forms
 from structure.nodes import NodeMap
+from structure.solver import know_rigid_motions
 
 
 class DiscreteBody:
@@ -37,6 +38,7 @@ class DiscreteBody:
         self.mass_matrix = forms.mass_matrix(self.space, density, mesh.order)
         self.unknowns = self.mass_matrix.getLocalSize()[0]
         places = mesh.points[self.nodes.owned]
+        know_rigid_motions(self.mass_matrix, places)
         along_x = self.weigh(np.tile([1.0, 0.0], len(places)))
         along_y = self.weigh(np.tile([0.0, 1.0], len(places)))
         self.mass = self.total(along_x[0::2].sum())

@@ -141,7 +141,7 @@ class ElasticStructure:
         ``(M^-1)_bb f`` with the consistent mass: what a step feels first, whatever the stiffness.
         """
         if self._mass_solve is None:
-            self._mass_solve = factorise(self._body.mass_matrix)
+            self._mass_solve = factorise(self._body.mass_matrix, self._body.mass_matrix)
         right, left = self._body.mass_matrix.createVecs()
         right.set(0.0)
         self._exchange.add(agreed_force(boundary_force, self.polyline.points.shape, self.comm), right.array)

@@ -54,7 +54,7 @@ class NewmarkStepper:
         if self.looks_back:
             self._a_before, self._f_before, self._f_change = (self._u.duplicate() for _ in range(3))
         self._weights()
-        self._solve = factorise(self._effective_matrix())
+        self._solve = factorise(self._effective_matrix(), mass)
 
     def _weights(self) -> None:
         """Weights of the accelerations in the increments of u and v, old a and mean a_m."""
@@ -78,7 +78,7 @@ class NewmarkStepper:
         if self._rhs.norm() == 0.0:
             self._a.set(0.0)
         else:
-            factorise(self._mass)(self._rhs, self._a)
+            factorise(self._mass, self._mass)(self._rhs, self._a)
         self.remember_force()
 
     def remember_force(self) -> None:
