@@ -44,7 +44,7 @@ class ConservingStepper(ABC):
         self.carried = np.zeros(2)
         self._force_before, self._load = np.zeros(unknowns), np.zeros(unknowns)
         self.turn, self._frame = 0.0, MeanFrame(body)
-        self._divide_by_mass = factorise(body.mass_matrix)
+        self._divide_by_mass = factorise(body.mass_matrix, body.mass_matrix)
         self._left, self._left_vector = self._with_vector()
         self._right, self._right_vector = self._with_vector()
 

@@ -79,7 +79,7 @@ class LargeStrainStepper(ConservingStepper):
         solver.setJacobian(self._fill_tangent, self._jacobian)
         solver.setTolerances(max_it=STEPS)
         solver.setConvergenceTest(self._converged)
-        configure(solver.getKSP(), self._mass.getSize()[0])
+        configure(solver.getKSP(), self._mass)
         solver.setOptionsPrefix("leito_")
         with _full_steps():
             solver.setFromOptions()

@@ -10,7 +10,7 @@ from slepc4py import SLEPc
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
 from structure.material import PlaneStrain
-from structure.solver import configure_few
+from structure.solver import configure
 
 RIGID_MODES = 3
 
@@ -82,7 +82,7 @@ def _solver(body: DiscreteBody, stiffness: PETSc.Mat, material: PlaneStrain, cou
     solver.setTolerances(tol=1e-12, max_it=1000)
     transform = solver.getST()
     transform.setType(SLEPc.ST.Type.SINVERT)
-    configure_few(transform.getKSP(), stiffness)
+    configure(transform.getKSP(), stiffness)
     solver.setOptionsPrefix("leito_modes_")
     solver.setFromOptions()
     return solver

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
@@ -37,12 +36,12 @@ def factorise(matrix: PETSc.Mat, mass: PETSc.Mat | None = None) -> Solve:
 
     Parameters
     ----------
-    matrix
-        Its near null space (see `know_rigid_motions`) serves multigrid.
     mass
-        What the matrix would be with a step of length zero; tells how stiff it is. May be the matrix itself. Without
-        it the matrix counts as stiff.
+        What the matrix would be with a step of length zero; tells how stiff it is, and multigrid the rigid motions
+        (`know_rigid_motions`). May be the matrix itself. Without it the matrix counts as stiff.
     """
+    if mass is not None and (rigid := mass.getNearNullSpace()):
+        matrix.setNearNullSpace(rigid)
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOperators(matrix)
     solver.setOptionsPrefix(PREFIX)
@@ -57,10 +56,10 @@ def factorise(matrix: PETSc.Mat, mass: PETSc.Mat | None = None) -> Solve:
 
 
 def factorise_for_few(matrix: PETSc.Mat) -> Solve:
-    """Function ``solve(b, x)`` of a matrix that has some ten right-hand sides, direct; see `configure_few`."""
+    """Function ``solve(b, x)`` of a matrix that has some ten right-hand sides, direct; see `configure`."""
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOperators(matrix)
-    configure_few(solver, matrix)
+    configure(solver, matrix)
     solver.setOptionsPrefix(STATICS_PREFIX)
     solver.setFromOptions()
     solver.setErrorIfNotConverged(True)
@@ -68,8 +67,8 @@ def factorise_for_few(matrix: PETSc.Mat) -> Solve:
     return solver.solve
 
 
-def configure_few(solver: PETSc.KSP, matrix: PETSc.Mat) -> None:
-    """Direct solver for some ten solves with a matrix like this one: MUMPS where it is large or on several ranks.
+def configure(solver: PETSc.KSP, matrix: PETSc.Mat) -> None:
+    """LU for some ten solves with a matrix of this pattern: by MUMPS where it is large or on several ranks.
 
     Raises
     ------
@@ -85,11 +84,10 @@ def configure_few(solver: PETSc.KSP, matrix: PETSc.Mat) -> None:
         )
     solver.setType("preonly")
     preconditioner = solver.getPC()
+    preconditioner.setType("lu")
     if solver.comm.size > 1 or unknowns > LARGE:
-        preconditioner.setType("cholesky")
         preconditioner.setFactorSolverType("mumps")
     else:
-        preconditioner.setType("lu")
         preconditioner.setFactorSolverType("petsc")
 
 
