@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from coupled.build import WARNED_SHARE, Built, stable_ratio
 from coupled.scene import Scene
 from coupled.step import StepLimits, limits_of
-from structure import departures
+from structure import departures, unused_solver_options
 
 INCOMPRESSIBLE = 0.45  # from here on stress at the nodes of standard cells, order 2 as well, is off by 20 % and more
 
@@ -41,6 +41,8 @@ def before(built: Built, limits: StepLimits | None = None) -> list[str]:
         limit = damping.overdamped_above
         hertz = limit / (2 * math.pi)
         said.append(f"Rayleigh's stiffness_factor over-damps every mode above {limit:.4g} rad/s ({hertz:.4g} Hz)")
+    if unused := unused_solver_options():
+        said.append(f"no solver of this scene knows the PETSc option {', '.join(unused)}: look at its spelling")
     return said + _locking(scene)
 
 

@@ -144,7 +144,8 @@ def _structure_rows(scene: Scene, built: Built) -> list[Row]:
 def _cost_rows(scene: Scene, built: Built, factor: float) -> list[Row]:
     model = built.model
     model.advance(1)  # loads the compiled code
-    steps = TRIED if model.particles is not None and model.particles.grains.n_free > 1000 else 10 * TRIED
+    many = model.particles is not None and model.particles.grains.n_free > 1000
+    steps = MPI.COMM_WORLD.bcast(TRIED if many else 10 * TRIED, root=0)
     started = time.perf_counter()
     model.advance(steps)
     per_step = (time.perf_counter() - started) / steps

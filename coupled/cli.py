@@ -38,6 +38,14 @@ SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Override one key, e.g. time.duration=1.0."),
 ]
+PetscOption = Annotated[
+    Optional[str],
+    typer.Option(
+        "--petsc",
+        metavar="OPTIONS",
+        help='PETSc options of the structure\'s solvers, e.g. "-leito_ksp_type cg -leito_pc_type gamg".',
+    ),
+]
 
 
 def main() -> None:
@@ -98,6 +106,7 @@ def run(
     overrides: SetOption = None,
     threads: Annotated[int | None, typer.Option(min=1, help="Threads for the grains; all cores by default.")] = None,
     progress: Annotated[bool, typer.Option(help="Show a progress bar.")] = True,
+    petsc: PetscOption = None,
 ) -> None:
     """Run a scene and write its results."""
     if resume and overwrite:
@@ -105,6 +114,7 @@ def run(
     from coupled.scene import load_scene
 
     loaded = load_scene(scene, overrides or ())
+    _set_petsc(petsc)
     from coupled.run import run_scene
 
     run_scene(
@@ -123,15 +133,24 @@ def _default_folder(scene: str, folder: str | None) -> Path:
 
 
 @app.command()
-def check(scene: SceneArgument, overrides: SetOption = None) -> None:
+def check(scene: SceneArgument, overrides: SetOption = None, petsc: PetscOption = None) -> None:
     """Validate a scene and say what a run would cost."""
     from coupled.scene import load_scene
 
     loaded = load_scene(scene, overrides or ())
+    _set_petsc(petsc)
     from coupled.check import check_scene
 
+    rows = check_scene(loaded)
     if _first_rank():
-        _print_table(("", "quantity", "value"), check_scene(loaded))
+        _print_table(("", "quantity", "value"), rows)
+
+
+def _set_petsc(options: str | None) -> None:
+    if options is not None:
+        from structure import set_solver_options
+
+        set_solver_options(options)
 
 
 @app.command("list")

@@ -32,6 +32,7 @@ from coupled.step import with_step
 from coupled.summary import summarise, tell
 from coupled.watchdog import watch
 from particles.beds import rest_ratio
+from structure import solver_options
 
 Result = TypeVar("Result")
 PEAKS = (
@@ -249,7 +250,7 @@ class Run:
             grains = self.scene.first_grains
             threads = self.model.particles.threads if self.model.particles is not None else 0
             seed = grains.seed if grains is not None else None
-            about = provenance(threads=threads, ranks=self.comm.size, seed=seed)
+            about = provenance(threads=threads, ranks=self.comm.size, seed=seed, petsc=solver_options())
             write_json(self.folder.file("provenance.json"), about | {"wall_seconds": self.seconds | self.model.seconds})
 
     def _warn(self, seen: Observation) -> None:

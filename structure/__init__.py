@@ -5,6 +5,7 @@ from structure.errors import StructureError
 from structure.free_rigid import FreeRigid
 from structure.loads import BodyForce, BoundaryLoad, PointLoad, Pressure
 from structure.material import PlaneStrain, Rayleigh
+from structure.options import set_solver_options, solver_options, unused_solver_options
 from structure.prescribed import PrescribedRigid
 from structure.protocol import Structure
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
@@ -36,4 +37,7 @@ __all__ = [
     "StructurePeaks",
     "Table",
     "departures",
+    "set_solver_options",
+    "solver_options",
+    "unused_solver_options",
 ]

@@ -47,12 +47,8 @@ def factorise(matrix: PETSc.Mat, mass: PETSc.Mat | None = None) -> Solve:
     solver.setOptionsPrefix(PREFIX)
     solver.setTolerances(rtol=RESIDUAL)
     with _Defaults(_settings(matrix, mass)):
-        solver.setFromOptions()
-        _iterate_if_inexact(solver)
-        solver.setErrorIfNotConverged(True)
-        solver.setUp()
-        solver.getPC().setUp()
-    return solver.solve
+        _set_up(solver)
+    return solver.solve if solver.getType() == "preonly" else _told(solver)
 
 
 def factorise_for_few(matrix: PETSc.Mat) -> Solve:
@@ -61,10 +57,9 @@ def factorise_for_few(matrix: PETSc.Mat) -> Solve:
     solver.setOperators(matrix)
     configure(solver, matrix)
     solver.setOptionsPrefix(STATICS_PREFIX)
-    solver.setFromOptions()
-    solver.setErrorIfNotConverged(True)
-    solver.setUp()
-    return solver.solve
+    solver.setTolerances(rtol=RESIDUAL)
+    _set_up(solver)
+    return _told(solver)
 
 
 def configure(solver: PETSc.KSP, matrix: PETSc.Mat) -> None:
@@ -134,6 +129,40 @@ def _stiffness_over_mass(matrix: PETSc.Mat, mass: PETSc.Mat) -> float:
     ratio, below = matrix.getDiagonal(), mass.getDiagonal()
     ratio.pointwiseDivide(ratio, below)
     return ratio.max()[1] - 1.0
+
+
+def _set_up(solver: PETSc.KSP) -> None:
+    """Take up the options and do all work that does not depend on the right-hand side."""
+    try:
+        solver.setFromOptions()
+        _iterate_if_inexact(solver)
+        solver.setErrorIfNotConverged(True)
+        solver.setUp()
+        solver.getPC().setUp()
+    except PETSc.Error as error:
+        raise StructureError(
+            f"PETSc cannot set up a solver for {solver.getOperators()[0].getSize()[0]} unknowns "
+            f"({_last_line(error)}): change the options -{solver.getOptionsPrefix()}..., or the mesh"
+        ) from None
+
+
+def _told(solver: PETSc.KSP) -> Solve:
+    """The solve of an iterative solver; that it does not converge is said in a sentence."""
+
+    def solve(right: PETSc.Vec, solution: PETSc.Vec) -> None:
+        try:
+            solver.solve(right, solution)
+        except PETSc.Error as error:
+            raise StructureError(
+                f"the {solver.getType()} solver with {solver.getPC().getType()} fails after {solver.getIterationNumber()} "
+                f"iterations ({_last_line(error)}): change the options -{solver.getOptionsPrefix()}..."
+            ) from None
+
+    return solve
+
+
+def _last_line(error: PETSc.Error) -> str:
+    return str(error).strip().splitlines()[-1]
 
 
 def _iterate_if_inexact(solver: PETSc.KSP) -> None:

@@ -20,8 +20,8 @@ def write_json(path: Path, content: dict[str, Any]) -> None:
     os.replace(beside, path)
 
 
-def provenance(*, threads: int, ranks: int, seed: int | None) -> dict[str, Any]:
-    """Versions, machine, threads, ranks and seed."""
+def provenance(*, threads: int, ranks: int, seed: int | None, petsc: dict[str, str]) -> dict[str, Any]:
+    """Versions, machine, threads, ranks, seed and the PETSc options of the solvers."""
     return {
         "written": datetime.now(UTC).isoformat(timespec="seconds"),
         "versions": {name: _version(name) for name in PACKAGES} | {"python": platform.python_version()},
@@ -29,6 +29,7 @@ def provenance(*, threads: int, ranks: int, seed: int | None) -> dict[str, Any]:
         "threads": threads,
         "ranks": ranks,
         "seed": seed,
+        "petsc_options": petsc,
     }
 
 
