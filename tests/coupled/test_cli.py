@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -205,3 +206,23 @@ def test_refusal_loads_neither_finite_elements_nor_compiled_kernels():
     assert done.returncode == 2
     assert done.stdout.strip() == ""
     assert "Traceback" not in done.stderr and "time.step = -1" in done.stderr
+
+
+def test_petsc_options_reach_the_solvers_and_the_provenance(tmp_path):
+    """In a process of its own: PETSc's options are one table for all."""
+    run = [sys.executable, "-m", "coupled.cli", "run", "beam_vibration", "--set", "time.duration=2e-4", "--out"]
+    options = "-leito_ksp_type cg -leito_pc_type gamg -leito_kps_rtol 1e-9"
+    done = subprocess.run(
+        [*run, str(tmp_path / "out"), "--no-progress", "--petsc", options], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
+    assert "note: no solver of this scene knows the PETSc option -leito_kps_rtol" in done.stderr
+    recorded = json.loads((tmp_path / "out" / "provenance.json").read_text())["petsc_options"]
+    assert recorded == {"leito_ksp_type": "cg", "leito_pc_type": "gamg", "leito_kps_rtol": "1e-9"}
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_petsc_options_of_others_are_refused(command, leito, tmp_path):
+    code, _, err = leito(command, "beam_vibration", "--petsc", "-ksp_type cg")
+    assert code == 2
+    assert "option -ksp_type does not begin with -leito_" in err
