@@ -39,7 +39,7 @@ SetOption = Annotated[
     typer.Option("--set", metavar="KEY=VALUE", help="Override one key, e.g. time.duration=1.0."),
 ]
 PetscOption = Annotated[
-    Optional[str],
+    str | None,
     typer.Option(
         "--petsc",
         metavar="OPTIONS",

@@ -75,9 +75,8 @@ class NewmarkStepper:
         """Acceleration that is in equilibrium with displacement, velocity and force."""
         self._u.copy(self._relative)
         self._residual(self._f)
-        if self._rhs.norm() == 0.0:
-            self._a.set(0.0)
-        else:
+        self._a.set(0.0)
+        if self._rhs.norm() > 0.0:
             factorise(self._mass, self._mass)(self._rhs, self._a)
         self.remember_force()
 

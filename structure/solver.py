@@ -23,6 +23,7 @@ MANY_RANKS_ITERATE = 200_000  # unknowns from which several ranks iterate if the
 MASS_DOMINATES = 1.0  # largest ratio of the stiffness to the mass on the diagonal at which a handful of iterations do
 INCOMPLETE_UP_TO = 500.0  # the same ratio, up to which incomplete Cholesky beats multigrid
 RESIDUAL = 1e-12  # of iterative solves, over the right-hand side: what ranks differ by, and the ledger's noise
+ANY = 1e300  # growth of a residual: a first guess may be far off where loads vanish at once
 FACTOR_BYTES = 0.55  # of a factor, per entry of the matrix and binary logarithm of the unknowns, times 12
 SHARE_OF_MEMORY = 0.7  # that a factor may take of what is available
 
@@ -45,7 +46,7 @@ def factorise(matrix: PETSc.Mat, mass: PETSc.Mat | None = None) -> Solve:
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOperators(matrix)
     solver.setOptionsPrefix(PREFIX)
-    solver.setTolerances(rtol=RESIDUAL)
+    solver.setTolerances(rtol=RESIDUAL, divtol=ANY)
     with _Defaults(_settings(matrix, mass)):
         _set_up(solver)
     return solver.solve if solver.getType() == "preonly" else _told(solver)
@@ -57,7 +58,7 @@ def factorise_for_few(matrix: PETSc.Mat) -> Solve:
     solver.setOperators(matrix)
     configure(solver, matrix)
     solver.setOptionsPrefix(STATICS_PREFIX)
-    solver.setTolerances(rtol=RESIDUAL)
+    solver.setTolerances(rtol=RESIDUAL, divtol=ANY)
     _set_up(solver)
     return _told(solver)
 

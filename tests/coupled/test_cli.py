@@ -226,3 +226,12 @@ def test_petsc_options_of_others_are_refused(command, leito, tmp_path):
     code, _, err = leito(command, "beam_vibration", "--petsc", "-ksp_type cg")
     assert code == 2
     assert "option -ksp_type does not begin with -leito_" in err
+
+
+def test_petsc_option_without_meaning_is_one_line():
+    """In a process of its own: PETSc does not recover from such an error."""
+    run = [sys.executable, "-m", "coupled.cli", "check", "beam_vibration", "--petsc", "-leito_ksp_type none_such"]
+    done = subprocess.run(run, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2
+    (line,) = done.stderr.strip().splitlines()
+    assert line.startswith("leito: PETSc cannot set up a solver for 810 unknowns") and "none_such" in line
