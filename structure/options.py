@@ -27,12 +27,14 @@ def set_solver_options(text: str) -> None:
         if not _is_name(word):
             if place == 0 or not _is_name(words[place - 1]):
                 raise StructureError(
-                    f"PETSc options have {word!r} where a name is expected: write names and values in turn, as in {EXAMPLE}"
+                    f"PETSc options have {word!r} where a name is expected: write names and values in turn, "
+                    f"as in {EXAMPLE}"
                 )
             continue
         if not word.startswith(f"-{PREFIX}"):
             raise StructureError(
-                f"PETSc option {word} does not begin with -{PREFIX}: options of the structure's solvers do, as in {EXAMPLE}"
+                f"PETSc option {word} does not begin with -{PREFIX}: options of the structure's solvers do, "
+                f"as in {EXAMPLE}"
             )
         value = words[place + 1] if place + 1 < len(words) and not _is_name(words[place + 1]) else None
         options.setValue(word, value)

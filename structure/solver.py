@@ -1,7 +1,7 @@
 """Linear systems with one matrix and many right-hand sides: how they are solved, by size and by stiffness.
 
-The measurements behind the choice are in docs/decisions.md, "Linear solvers". PETSc options replace any part of it: with
-the prefix ``leito_`` for steps and masses, ``leito_statics_`` for statics, ``leito_modes_`` for modes.
+The measurements behind the choice are in docs/decisions.md, "Linear solvers". PETSc options replace any part of it,
+with the prefix ``leito_`` for steps and masses, ``leito_statics_`` for statics, ``leito_modes_`` for modes.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
@@ -75,8 +76,8 @@ def configure(solver: PETSc.KSP, matrix: PETSc.Mat) -> None:
     needed, free = factor_memory(matrix), available_memory()
     if needed > SHARE_OF_MEMORY * free:
         raise StructureError(
-            f"{unknowns} unknowns need a factor of about {needed / 2**30:.3g} GiB and {free / 2**30:.3g} GiB of memory are "
-            "available: take a coarser mesh"
+            f"{unknowns} unknowns need a factor of about {needed / 2**30:.3g} GiB and {free / 2**30:.3g} GiB of memory "
+            "are available: take a coarser mesh"
         )
     solver.setType("preonly")
     preconditioner = solver.getPC()
@@ -155,8 +156,9 @@ def _told(solver: PETSc.KSP) -> Solve:
             solver.solve(right, solution)
         except PETSc.Error as error:
             raise StructureError(
-                f"the {solver.getType()} solver with {solver.getPC().getType()} fails after {solver.getIterationNumber()} "
-                f"iterations ({_last_line(error)}): change the options -{solver.getOptionsPrefix()}..."
+                f"the {solver.getType()} solver with {solver.getPC().getType()} fails after "
+                f"{solver.getIterationNumber()} iterations ({_last_line(error)}): "
+                f"change the options -{solver.getOptionsPrefix()}..."
             ) from None
 
     return solve
