@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from coupled.glued import GluedGrains
 from particles import ParticleSystem
-from structure import Structure
+from structure import Structure, agreed_force, withhold_force
 
 Floats = NDArray[np.float64]
 
@@ -80,7 +80,8 @@ class Model:
         """Take `steps` structure steps (grain steps, if there is no structure)."""
         if self.structure is None:
             started = time.perf_counter()
-            self.particles.advance(steps * self.substeps)
+            if self.particles is not None:
+                self.particles.advance(steps * self.substeps)
             self.seconds["grains"] += time.perf_counter() - started
         elif self.glued is None:
             started = time.perf_counter()
@@ -91,6 +92,8 @@ class Model:
             step = self._lagged_step if self.lagged else self._predicted_step
             for _ in range(steps):
                 step()
+            if self.structure.comm.size > 1:  # an error of the last step reaches the ranks without grains here
+                agreed_force(self.nodal_force, self.nodal_force.shape, self.structure.comm)
         self.steps_done += steps
 
     def _predicted_step(self) -> None:
@@ -119,7 +122,11 @@ class Model:
         self._boundary = displacement
         particles.steer(self.places, glued.places(displacement), self.window, velocity)
         started = time.perf_counter()
-        particles.advance(self.substeps)
+        try:
+            particles.advance(self.substeps)
+        except Exception as error:
+            withhold_force(error, self.nodal_force.shape, self.structure.comm)
+            raise
         taken = time.perf_counter() - started
         self.seconds["grains"] += taken
         self.seconds["exchange"] -= taken

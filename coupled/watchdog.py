@@ -1,46 +1,161 @@
-"""What stops a run that has gone wrong, before it writes a checkpoint of it."""
+"""The signs by which a run is seen to go wrong."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import Literal
 
+import numpy as np
+
+from coupled import culprit
+from coupled.balance import Balance, take_balance
 from coupled.errors import LeitoError
 from coupled.model import Model
-from coupled.observe import Observation
+from particles import ContactLook, sharp_limit
+from particles.spots import alternating
 
 DEEPEST_OVERLAP = 0.5  # of the smaller radius: the linear contact has lost its meaning
+FARTHEST_STEP = 0.5  # of its radius that a grain in contact may go in a step
 ENERGY_MADE = 0.25  # of the energy turned over
+OF_PRESENT = 0.01  # of kinetic and elastic energy, that energy made between two looks must exceed
 NOISE = 1e-6  # of the energy stored: below it a relative error says nothing
+TURNING = 2e-3  # share of the free grains that turn about at every step; in sound beds up to 4e-4
+
+Remedy = Literal["step", "contact", "exchange", "structure"]
 
 
 class Unstable(LeitoError):
     """A run stopped by a watchdog."""
 
 
-def watch(model: Model, seen: Observation) -> None:
-    """Refuse to go on with a broken state.
+@dataclass(frozen=True)
+class Glance:
+    """What a watchdog looks at: the ledger and the contacts at one moment."""
 
-    Raises
-    ------
-    Unstable
-        With the quantity, its value, and what to change.
-    """
-    lost = [name for name, value in seen.numbers.items() if not math.isfinite(value)]
-    if lost:
-        raise Unstable(
-            f"t = {model.time:g} s: {lost[0]} is no longer a finite number, the run is unstable; "
-            "take a smaller time.step"
-        )
-    if seen.look is not None and seen.look.deepest > DEEPEST_OVERLAP:
-        number = model.particles.grains.number[seen.look.deepest_at]
-        raise Unstable(
-            f"t = {model.time:g} s: overlap of grain {number} is {seen.look.deepest:.2f} of the smaller radius, above "
-            f"{DEEPEST_OVERLAP:g}; take a stiffer contact.normal_stiffness or a smaller time.step"
-        )
+    balance: Balance
+    look: ContactLook | None
+
+
+@dataclass(frozen=True)
+class Sign:
+    """What is wrong, with its place and value, and what to change about it."""
+
+    what: str
+    remedy: Remedy
+
+
+def glance(model: Model, start: dict[str, float]) -> Glance:
+    """Look at the model; `start` are the ledger's entries at the beginning. Collective under MPI."""
+    look = model.particles.look() if model.particles is not None else None
+    return Glance(take_balance(model, look, start), look)
+
+
+def first_sign(model: Model, seen: Glance, since: Glance) -> Sign | None:
+    """What is wrong with a state, if anything; `since` is the last look that found nothing. On rank 0."""
+    return (
+        _not_finite(model, seen)
+        or _too_deep(model, seen)
+        or _too_fast(model, seen)
+        or _energy_made(model, seen, since)
+        or _energy_made_in_all(model, seen)
+    )
+
+
+def _not_finite(model: Model, seen: Glance) -> Sign | None:
+    lost = [name for name, value in seen.balance.entries.items() if not math.isfinite(value)]
+    if not lost:
+        return None
+    where = ""
+    if model.particles is not None and model.particles.grains.n_free:
+        grains = model.particles.grains
+        speed = np.hypot(grains.vx, grains.vy)
+        bad = np.nonzero(~np.isfinite(speed))[0]
+        where = f", first at {culprit.name_of_grain(model, int(bad[0]))}" if len(bad) else ""
+    if model.structure is not None and not where:
+        where = f", worst at {culprit.liveliest_node(model)}"
+    return Sign(f"{lost[0]} is no longer a finite number{where}", "step")
+
+
+def _too_deep(model: Model, seen: Glance) -> Sign | None:
+    if seen.look is None or not seen.look.deepest > DEEPEST_OVERLAP:
+        return None
+    return Sign(
+        f"the overlap of {culprit.touch_of(model, seen.look.deepest_at)} is {seen.look.deepest:.2f} of the smaller "
+        f"radius, above {DEEPEST_OVERLAP:g}",
+        "contact",
+    )
+
+
+def _too_fast(model: Model, seen: Glance) -> Sign | None:
+    """A grain that goes on after half its radius in a step has contacts that are not resolved."""
+    if seen.look is None or not model.particles.grains.n_free:
+        return None
+    place = culprit.fastest_grain(model)
+    grains = model.particles.grains
+    share = float(np.hypot(grains.vx[place], grains.vy[place])) * model.particles.time_step / grains.radius[place]
+    if seen.look.contacts[place] == 0 or share <= FARTHEST_STEP:
+        return None
+    return Sign(
+        f"{culprit.touch_of(model, place)} goes {share:.2f} of its radius in a step, more than {FARTHEST_STEP:g}",
+        "step",
+    )
+
+
+def _energy_made(model: Model, seen: Glance, since: Glance) -> Sign | None:
+    """Energy from nothing since the last look, against what was turned over and what is there."""
+    now, then = seen.balance, since.balance
+    made = now.error - then.error
+    turned = 0.5 * sum(abs(now.entries[name] - then.entries.get(name, 0.0)) for name in now.entries)
+    moving = sum(abs(v) for name, v in now.entries.items() if name.endswith(("kinetic", "rotational")))
+    elastic = sum(v for name, v in now.entries.items() if name.endswith(("_springs", "_strain")))
+    stored = sum(abs(value) for value in now.entries.values())
+    if not made > max(ENERGY_MADE * turned, OF_PRESENT * (moving + elastic), NOISE * stored):
+        return None
+    return _energy_sign(model, made, made / turned, now, then)
+
+
+def _energy_made_in_all(model: Model, seen: Glance) -> Sign | None:
+    """Energy from nothing since the start."""
     balance = seen.balance
     stored = sum(abs(value) for value in balance.entries.values())
-    if balance.error > ENERGY_MADE * balance.throughput and balance.error > NOISE * stored:
-        raise Unstable(
-            f"t = {model.time:g} s: {balance.error:.3g} J/m have come from nothing, {balance.relative_error:.0%} of "
-            "the energy turned over; take a smaller time.step"
-        )
+    if not balance.error > max(ENERGY_MADE * balance.throughput, NOISE * stored):
+        return None
+    return _energy_sign(model, balance.error, balance.relative_error, balance, None)
+
+
+def _energy_sign(model: Model, made: float, share: float, now: Balance, then: Balance | None) -> Sign:
+    """Where energy came from nothing: at the interface if its two works differ by most of it, else among the grains."""
+    text = f"{made:.3g} J/m have come from nothing, {share:.0%} of the energy turned over"
+    if then is not None:
+        text += f" ({culprit.fastest_line(now, then)})"
+    residual = now.interface_residual - (then.interface_residual if then is not None else 0.0)
+    if model.glued is not None and abs(residual) > 0.5 * made:
+        return Sign(f"{text}, at the interface; liveliest is {culprit.liveliest_node(model)}", "exchange")
+    if model.particles is None or not model.particles.grains.n_free:
+        return Sign(f"{text}; liveliest is {culprit.liveliest_node(model)}", "structure")
+    return Sign(f"{text}; fastest is {culprit.touch_of(model, culprit.fastest_grain(model))}", "step")
+
+
+def turning_grains(model: Model) -> bool:
+    """Whether more grains turn about from step to step than births of contacts explain. On rank 0."""
+    system = model.particles
+    return system is not None and len(alternating(system)) > max(TURNING * system.grains.n_free, 1)
+
+
+def rattle(model: Model) -> Sign | None:
+    """The time step is above the limit of the present contacts, and grains turn about in it. On rank 0.
+
+    Friction and opening contacts keep such a bed from exploding: its grains rattle in their places,
+    which neither overlaps nor the ledger show. Costs a Lanczos iteration: ask where `turning_grains`.
+    """
+    system = model.particles
+    limit = sharp_limit(system)
+    if not system.time_step > limit.step:
+        return None
+    return Sign(
+        f"{len(alternating(system))} of {system.grains.n_free} grains turn about at every step, as the time step is "
+        f"{system.time_step / limit.step:.3g} times the limit of the present contacts, {limit.step:.3g} s; the fastest "
+        f"mode is that of {culprit.touch_of(model, limit.grain)}",
+        "step",
+    )

@@ -110,6 +110,7 @@ class ParticleSystem:
             raise ParticleError(f"material {most} has no row in the table of {contact.materials} contact laws: add it")
         self.grains = grains
         self.contact = contact
+        self.walls = tuple(walls)
         self.time_step = float(time_step)
         if scheme not in SCHEMES:
             raise ParticleError(f"scheme {scheme!r} must be one of {', '.join(SCHEMES)}")

@@ -1,5 +1,6 @@
 """Structures: elastic by finite elements, rigid along a path, or rigid and free."""
 
+from structure.boundary import agreed_force, withhold_force
 from structure.elastic import ElasticStructure
 from structure.errors import StructureError
 from structure.free_rigid import FreeRigid
@@ -36,8 +37,10 @@ __all__ = [
     "StructureFields",
     "StructurePeaks",
     "Table",
+    "agreed_force",
     "departures",
     "set_solver_options",
     "solver_options",
     "unused_solver_options",
+    "withhold_force",
 ]

@@ -11,7 +11,7 @@ from structure.nodes import NodeMap
 
 
 def agreed_force(force: NDArray[np.float64], shape: tuple[int, ...], comm: MPI.Intracomm) -> NDArray[np.float64]:
-    """A copy of the nodal forces of rank 0, on every rank.
+    """A copy of the nodal forces of rank 0, on every rank; its error, if it has one instead (`withhold_force`).
 
     Raises
     ------
@@ -19,15 +19,28 @@ def agreed_force(force: NDArray[np.float64], shape: tuple[int, ...], comm: MPI.I
         The array has not the `shape` (n_b, 2).
     """
     if comm.rank == 0 and np.shape(force) != shape:
-        raise StructureError(
+        wrong = StructureError(
             f"boundary_force has shape {np.shape(force)}: one force per boundary node, {shape}, is needed"
         )
-    counting = np.empty(shape)
+        withhold_force(wrong, shape, comm)
+        raise wrong
+    if comm.size == 1:
+        return np.array(force, dtype=float)
+    packet = np.zeros(shape[0] * shape[1] + 1)  # the last number is not zero where an error follows
     if comm.rank == 0:
-        counting[:] = force
+        packet[:-1] = np.ravel(force)
+    comm.Bcast(packet, root=0)
+    if packet[-1] != 0.0:
+        raise comm.bcast(None, root=0)
+    return packet[:-1].reshape(shape)
+
+
+def withhold_force(error: Exception, shape: tuple[int, ...], comm: MPI.Intracomm) -> None:
+    """Tell the other ranks, who wait in `agreed_force`, that rank 0 has no forces but an error; call it there."""
     if comm.size > 1:
-        comm.Bcast(counting, root=0)
-    return counting
+        packet = np.ones(shape[0] * shape[1] + 1)
+        comm.Bcast(packet, root=0)
+        comm.bcast(error, root=0)
 
 
 class LocalBoundary:

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import shutil
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from coupled.errors import LeitoError
 from coupled.output import checkpoint
+from coupled.restep import STEP, with_finer_step
 from coupled.scene import Scene, SceneError, dump_scene, load_scene
 
 SCENE = "scene.toml"
 SUMMARY = "summary.json"
+BEFORE_FAILURE = "before_failure.h5"
 OURS = (
-    SCENE, SUMMARY, checkpoint.NAME, "history.csv", "grains.xdmf", "structure.xdmf", "provenance.json", "log.txt",
-    "frames", "figures",
+    SCENE, SUMMARY, checkpoint.NAME, BEFORE_FAILURE, "history.csv", "grains.xdmf", "structure.xdmf", "provenance.json",
+    "log.txt", "frames", "figures",
 )  # fmt: skip
-FREE_TO_CHANGE = ("time.duration", "output.", "title")  # when a run is taken up again
+FREE_TO_CHANGE = ("time.duration", "time.step", "output.", "title")  # when a run is taken up again
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,7 @@ class RunFolder:
     """
 
     path: Path
-    saved: dict[str, Any] | None
+    saved: Mapping[str, Any] | None
     to_clear: bool
 
     def file(self, name: str) -> Path:
@@ -52,17 +55,27 @@ def open_folder(path: Path, scene: Scene, *, resume: bool, overwrite: bool) -> R
         If it holds results and neither `resume` nor `overwrite` is given, or it belongs to
         another scene.
     """
-    if path.exists() and not path.is_dir():
-        raise LeitoError(f"{path} is a file; give another folder with --out")
     holds = path.is_dir() and any(path.iterdir())
     if holds and not (resume or overwrite):
         raise LeitoError(f"{path} holds a run already; go on with --resume, or start anew with --overwrite or --out")
     saved = None
     if holds and resume:
         _require_same_scene(path, scene)
-        if (path / checkpoint.NAME).exists():
-            saved, _ = checkpoint.load(path / checkpoint.NAME)
+        saved = _latest(path, scene)
     return RunFolder(path, saved, to_clear=holds and overwrite)
+
+
+def _latest(path: Path, scene: Scene) -> Mapping[str, Any] | None:
+    """The last state that was saved, with the step of the scene: the checkpoint, or what a failed run left."""
+    found = [checkpoint.load(path / name)[0] for name in (checkpoint.NAME, BEFORE_FAILURE) if (path / name).exists()]
+    if not found:
+        return None
+    return with_finer_step(max(found, key=_time_of), scene.time.step, scene.gravity)
+
+
+def _time_of(saved: Mapping[str, Any]) -> float:
+    """Simulated time [s] of a state, in grain steps of the run if it does not know its step."""
+    return float(saved["model.steps_done"]) * float(saved.get(STEP, 1.0))
 
 
 def _clear(path: Path) -> None:

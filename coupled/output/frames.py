@@ -6,6 +6,7 @@ alone, and a resumed run drops the frames that lie after its checkpoint.
 
 from __future__ import annotations
 
+import math
 import os
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
@@ -42,6 +43,7 @@ class Frames:
     def __init__(self, folder: Path, name: str, *, keep_until: float | None = None) -> None:
         self.folder, self.name = folder, name
         self._count = 0
+        self.last_time = -math.inf  # of the last frame [s]
         self._index = ET.Element("Xdmf", Version="3.0")
         domain = ET.SubElement(self._index, "Domain")
         self._series = ET.SubElement(domain, "Grid", Name=name, GridType="Collection", CollectionType="Temporal")
@@ -82,6 +84,7 @@ class Frames:
     def _enter(self, time: float, path: Path) -> None:
         """Add a frame file to the index."""
         self._count += 1
+        self.last_time = time
         grid = ET.SubElement(self._series, "Grid", Name=self.name, GridType="Uniform")
         ET.SubElement(grid, "Time", Value=repr(time))
         with h5py.File(path, "r") as file:

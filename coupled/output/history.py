@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import os
 from pathlib import Path
 
@@ -13,7 +14,7 @@ NAME = "history.csv"
 
 
 class History:
-    """Rows of numbers against time, flushed as they come.
+    """Rows of numbers against time, flushed as they come; `last_time` [s] is that of the last one.
 
     Parameters
     ----------
@@ -26,6 +27,7 @@ class History:
     def __init__(self, path: Path, *, keep_until: float | None = None) -> None:
         self.path = path
         self._names: list[str] = []
+        self.last_time = -math.inf
         if keep_until is not None and path.exists():
             self._keep(keep_until)
 
@@ -41,6 +43,7 @@ class History:
         with open(beside, "w", newline="") as file:
             csv.writer(file).writerows([rows[0], *whole])
         os.replace(beside, self.path)
+        self.last_time = float(whole[-1][0]) if whole else -math.inf
 
     def write(self, row: dict[str, float]) -> None:
         """Append a row; the first one makes the header."""
@@ -51,6 +54,7 @@ class History:
                 self._names = list(row)
                 writer.writerow(self._names)
             writer.writerow([repr(float(row[name])) for name in self._names])
+        self.last_time = float(row[self._names[0]])
 
 
 def read_history(path: Path) -> dict[str, NDArray[np.float64]]:

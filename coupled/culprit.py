@@ -1,0 +1,65 @@
+"""Where it is that a run goes wrong, in words: a grain and its contact, a node, a line of the ledger."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coupled.balance import Balance
+from coupled.model import Model
+from particles.spots import deepest_touch
+
+
+def name_of_grain(model: Model, place: int) -> str:
+    """A grain by its number and place: free, glued or of a row."""
+    grains = model.particles.grains
+    at = f"at ({grains.x[place]:.4g}, {grains.y[place]:.4g}) m"
+    body = int(grains.body[place])
+    if body < 0:
+        return f"grain {grains.number[place]} {at}"
+    within = place - grains.bodies()[body].start
+    return (
+        f"glued grain {within} {at}" if body == model.GLUED and model.glued is not None else f"row grain {within} {at}"
+    )
+
+
+def touch_of(model: Model, place: int) -> str:
+    """A grain with its deepest contact, the overlap and the speed of approach."""
+    system = model.particles
+    touch, grain = deepest_touch(system, place), name_of_grain(model, place)
+    if touch is None:
+        return grain
+    if touch.partner is not None:
+        partner = name_of_grain(model, touch.partner)
+    else:
+        partner = f"wall {system.walls[touch.wall].name!r}"
+    return (
+        f"{grain} and {partner} (overlap {touch.depth:.3g} of the smaller radius, "
+        f"{'closing' if touch.approach >= 0.0 else 'parting'} at {abs(touch.approach):.3g} m/s)"
+    )
+
+
+def liveliest_node(model: Model) -> str:
+    """The boundary node with the largest acceleration."""
+    body = model.structure
+    size = np.hypot(*body.boundary_acceleration.T)
+    node = int(np.argmax(np.where(np.isfinite(size), size, np.inf)))
+    x, y = (body.polyline.points + body.boundary_displacement)[node]
+    return f"boundary node {node} at ({x:.4g}, {y:.4g}) m with an acceleration of {size[node]:.3g} m/s2"
+
+
+def fastest_line(balance: Balance, since: Balance) -> str:
+    """The line of the ledger that has changed most."""
+    change = {name: balance.entries[name] - since.entries.get(name, 0.0) for name in balance.entries}
+    name = max(change, key=lambda key: abs(change[key]))
+    return f"{name} changed by {change[name]:+.3g} J/m"
+
+
+def fastest_grain(model: Model) -> int | None:
+    """Place of the fastest free grain that touches something, or of the fastest; None without free grains."""
+    grains, contacts = model.particles.grains, model.particles.look().contacts
+    if grains.n_free == 0:
+        return None
+    free = slice(grains.n_free)
+    speed = np.hypot(grains.vx[free], grains.vy[free])
+    touching = np.where(contacts[free] > 0, speed, -1.0)
+    return int(np.argmax(touching if touching.max() >= 0.0 else speed))

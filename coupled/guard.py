@@ -1,0 +1,143 @@
+"""Keeps the last good state of a run in memory, and goes back to it to find where it went wrong."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from mpi4py import MPI
+from numpy.typing import NDArray
+
+from coupled import watchdog
+from coupled.errors import LeitoError
+from coupled.model import Model
+from coupled.ranks import on_root, together
+from coupled.watchdog import Glance, Sign
+from particles import ParticleError
+from structure import StructureError
+
+LOOK = 1000  # grain steps between two looks: together with the copy of the state 0.5 % of the steps' time
+ROUGH = 32  # strides in which the way from the last good look is first gone again
+LONGEST_WAIT = 64  # looks, before grains that turn about for another reason are looked at again
+FAULTS = (ParticleError, StructureError, LeitoError)  # what a step may raise because the run is unstable
+
+
+class Good(NamedTuple):
+    """A state that all watchdogs have passed."""
+
+    state: dict[str, NDArray[Any]]
+    glance: Glance
+    step: int
+
+
+class Failed(LeitoError):
+    """A run that a watchdog or a step itself has ended. The model stands at `before_sign`.
+
+    Attributes
+    ----------
+    sign : Sign
+        The first one, with its place.
+    good : Good
+        The last good look before it.
+    time : float
+        Of the sign [s].
+    """
+
+    def __init__(self, sign: Sign, good: Good, time: float) -> None:
+        super().__init__(sign.what)
+        self.sign, self.good, self.time = sign, good, time
+
+
+class Guard:
+    """Watches a model on its way. All methods are collective under MPI.
+
+    Parameters
+    ----------
+    model : Model
+    start : dict
+        The ledger's entries at the beginning of the run [J/m].
+    comm : MPI communicator
+
+    Raises
+    ------
+    Failed
+        From `advance`, `check` and `keep`: after going back and finding the first sign.
+    """
+
+    def __init__(self, model: Model, start: dict[str, float], comm: MPI.Intracomm) -> None:
+        self._model, self._start, self._comm = model, start, comm
+        self._turned, self._wait, self._waited = False, 1, 0
+        seen = watchdog.glance(model, start)
+        self._good = Good(model.state(), seen, model.steps_done)
+        sign = self._sign(seen)
+        if sign is not None:
+            raise watchdog.Unstable(f"t = {model.time:g} s, before the first step: {sign.what}; change the scene")
+
+    def advance(self, steps: int) -> None:
+        """Take steps; one that cannot be taken ends the run."""
+        until = self._model.steps_done + steps
+        sign = self._try(steps)
+        if sign is not None:
+            raise self._failure(sign, until)
+
+    def check(self, seen: Glance) -> None:
+        """Look for signs in an observation."""
+        sign = self._sign(seen)
+        if sign is not None:
+            raise self._failure(sign, self._model.steps_done)
+
+    def keep(self) -> Good:
+        """Look for signs, those of a rattling bed as well, and keep the state if there are none."""
+        seen = watchdog.glance(self._model, self._start)
+        self.check(seen)
+        if on_root(self._comm, self._turns_twice):
+            sign = on_root(self._comm, lambda: watchdog.rattle(self._model))
+            if sign is not None:
+                raise self._failure(sign, self._model.steps_done, rattles=True)
+            self._wait = min(2 * self._wait, LONGEST_WAIT)
+        self._good = Good(self._model.state(), seen, self._model.steps_done)
+        return self._good
+
+    def _turns_twice(self) -> bool:
+        """Whether grains turn about in this look as in the last one, and it is time to ask why."""
+        before, self._turned = self._turned, watchdog.turning_grains(self._model)
+        self._waited += 1
+        if not (before and self._turned and self._waited >= self._wait):
+            return False
+        self._waited = 0
+        return True
+
+    def _sign(self, seen: Glance) -> Sign | None:
+        return on_root(self._comm, lambda: watchdog.first_sign(self._model, seen, self._good.glance))
+
+    def _try(self, steps: int) -> Sign | None:
+        """Take steps; the sign, if one cannot be taken."""
+        try:
+            together(self._comm, lambda: self._model.advance(steps))
+        except FAULTS as fault:
+            return Sign(str(fault), "step" if isinstance(fault, ParticleError) else "structure")
+        return None
+
+    def _sign_again(self, rattles: bool) -> Sign | None:
+        """As `_sign`, of the present state; `rattles`: grains that turn about are one now."""
+        found = self._sign(watchdog.glance(self._model, self._start))
+        if found is None and rattles and on_root(self._comm, lambda: watchdog.turning_grains(self._model)):
+            found = on_root(self._comm, lambda: watchdog.rattle(self._model))
+        return found
+
+    def _failure(self, sign: Sign, until: int, *, rattles: bool = False) -> Failed:
+        """Go back to the last good look and from there to the first sign: in strides, then step by step.
+
+        The way is the same to the bit. If it shows no sign before the step `until`, `sign` is the
+        first one. The model is left at the last step without a sign.
+        """
+        model, good, time = self._model, self._good, self._model.time
+        model.restore(good.state)
+        for stride in (max(1, (until - good.step) // ROUGH), 1):
+            found, before = None, model.state()
+            while found is None and model.steps_done < until:
+                before, steps = model.state(), min(stride, until - model.steps_done)
+                time = (model.steps_done + steps) * model.window
+                found = self._try(steps) or self._sign_again(rattles)
+            sign = found or sign
+            model.restore(before)
+        return Failed(sign, good, time)
