@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 
 from coupled.build import WARNED_SHARE, Built, stable_ratio
+from coupled.loads import unresolved_schedules
 from coupled.scene import Scene
 from coupled.step import StepLimits, limits_of
 from structure import departures, unused_solver_options
@@ -43,6 +44,8 @@ def before(built: Built, limits: StepLimits | None = None) -> list[str]:
         said.append(f"Rayleigh's stiffness_factor over-damps every mode above {limit:.4g} rad/s ({hertz:.4g} Hz)")
     if unused := unused_solver_options():
         said.append(f"no solver of this scene knows the PETSc option {', '.join(unused)}: look at its spelling")
+    if scene.structure is not None:
+        said += unresolved_schedules(scene.structure.loads, built.model.window)
     return said + _locking(scene)
 
 

@@ -12,6 +12,8 @@ from meshes import StructureMesh
 from structure.loads import Load
 from structure.schedules import Schedule
 
+FEWEST_STEPS = 20  # per period of a sine: Newmark then lengthens a period by 1 %
+
 
 def load_of(table: tables.Load, mesh: StructureMesh) -> Load:
     """The load that a table describes; a point counts from the centroid of the shape."""
@@ -39,6 +41,23 @@ def _schedule(table: tables.Schedule) -> Schedule:
         case tables.Rows():
             return fem.Table(times=table.times, factors=table.factors)
     return fem.Constant()
+
+
+def unresolved_schedules(loads: tuple[tables.Load, ...], step: float) -> list[str]:
+    """Sentences on schedules that change too fast for steps of a length [s]."""
+    said = []
+    for index, schedule in enumerate(load.schedule for load in loads):
+        if isinstance(schedule, tables.Sine) and schedule.cycles_per_second * step > 1.0 / FEWEST_STEPS:
+            said.append(
+                f"structure.loads.{index}: the sine has {1.0 / (schedule.cycles_per_second * step):.3g} steps a period; "
+                f"take at least {FEWEST_STEPS}"
+            )
+        if isinstance(schedule, tables.Rows) and (shortest := min(np.diff(schedule.times))) < step:
+            said.append(
+                f"structure.loads.{index}: rows of the table are {shortest:.3g} s apart, less than the structure's step "
+                f"of {step:.3g} s, which misses some of them"
+            )
+    return said
 
 
 def load_rows(loads: tuple[tables.Load, ...]) -> list[tuple[str, str, str]]:

@@ -233,11 +233,24 @@ def test_check_names_the_loads(tmp_path: Path) -> None:
     ]
 
 
+def test_check_says_what_the_step_does_not_resolve(tmp_path: Path) -> None:
+    rows = {"kind": "table", "times": [0.0, 0.0005, 0.01], "factors": [0.0, 1.0, 0.0]}
+    loads = [
+        {"kind": "body", "acceleration": [0.0, 1.0], "schedule": {"kind": "sine", "period": 0.01}},
+        {"kind": "body", "acceleration": [0.0, 1.0], "schedule": rows},
+        {"kind": "body", "acceleration": [0.0, 1.0], "schedule": {"kind": "sine", "period": 0.021}},
+    ]
+    notes = [text for section, _, text in check_scene(load_scene(written(tmp_path, loads))) if section == "note"]
+    assert [note.partition(":")[0] for note in notes] == ["structure.loads.0", "structure.loads.1"]
+    assert "10 steps a period" in notes[0] and "0.0005 s apart" in notes[1]
+
+
 def test_a_run_with_a_table_is_resumed_without_its_file(tmp_path: Path) -> None:
     (tmp_path / "load.csv").write_text("0,0\n0.004,1\n0.016,-1\n")
     schedule = {"kind": "table", "file": "load.csv"}
-    loads = [{"kind": "body", "acceleration": [0.0, 1.0], "schedule": schedule}, RING["structure"]["loads"][0]]
-    path = written(tmp_path, loads)
+    following = RING["structure"]["loads"][0] | {"follows": True}
+    loads = [{"kind": "body", "acceleration": [0.0, 1.0], "schedule": schedule}, following]
+    path = written(tmp_path, loads, **{"structure.theory": "corotational", "time.step": 1e-4})
     whole = run_scene(load_scene(path), out=tmp_path / "whole", threads=1, progress=False)
     part = run_scene(load_scene(path, ["time.duration=0.01"]), out=tmp_path / "part", threads=1, progress=False)
     (tmp_path / "load.csv").unlink()
@@ -279,7 +292,7 @@ def test_a_pressure_follows_what_the_scene_turns(kind: str, tmp_path: Path) -> N
 
 
 def test_the_pulsing_tube_breathes_as_lame_says() -> None:
-    """Radius against ``u = (1 + nu)/E ((1 - 2 nu) A b + B/b)``, ``A = p a^2/(b^2 - a^2)``, ``B = A b^2``, times the sine."""
+    """Lame's ``u = (1 + nu)/E ((1 - 2 nu) A b + B/b)``, ``A = p a^2/(b^2 - a^2)``, ``B = A b^2``, times the sine."""
     inner, outer, pressure, young, poisson = 0.04, 0.05, 1e6, 70e9, 0.35
     in_plane = pressure * inner**2 / (outer**2 - inner**2)
     grown = (1 + poisson) / young * ((1 - 2 * poisson) + 1.0) * in_plane * outer
