@@ -45,19 +45,19 @@ def _schedule(table: tables.Schedule) -> Schedule:
 
 def unresolved_schedules(loads: tuple[tables.Load, ...], step: float) -> list[str]:
     """Sentences on schedules that change too fast for steps of a length [s]."""
-    said = []
-    for index, schedule in enumerate(load.schedule for load in loads):
-        if isinstance(schedule, tables.Sine) and schedule.cycles_per_second * step > 1.0 / FEWEST_STEPS:
-            said.append(
-                f"structure.loads.{index}: the sine has {1.0 / (schedule.cycles_per_second * step):.3g} steps a period; "
-                f"take at least {FEWEST_STEPS}"
-            )
-        if isinstance(schedule, tables.Rows) and (shortest := min(np.diff(schedule.times))) < step:
-            said.append(
-                f"structure.loads.{index}: rows of the table are {shortest:.3g} s apart, less than the structure's step "
-                f"of {step:.3g} s, which misses some of them"
-            )
-    return said
+    said = [(index, _unresolved(load.schedule, step)) for index, load in enumerate(loads)]
+    return [f"structure.loads.{index}: {sentence}" for index, sentence in said if sentence]
+
+
+def _unresolved(schedule: tables.Schedule, step: float) -> str:
+    if isinstance(schedule, tables.Sine):
+        steps = 1.0 / (schedule.cycles_per_second * step)
+        return f"the sine has {steps:.3g} steps a period; take at least {FEWEST_STEPS}" if steps < FEWEST_STEPS else ""
+    if isinstance(schedule, tables.Rows):
+        shortest = min(np.diff(schedule.times))
+        missed = f"rows of the table are {shortest:.3g} s apart, and a step of {step:.3g} s misses some of them"
+        return missed if shortest < step else ""
+    return ""
 
 
 def load_rows(loads: tuple[tables.Load, ...]) -> list[tuple[str, str, str]]:
