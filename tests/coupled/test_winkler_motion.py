@@ -174,7 +174,7 @@ def test_moving_load_on_a_long_beam_is_that_of_an_infinite_one(interface: str, s
         rows = {"kind": "table", "times": times, "factors": [0.0, 1.0, 0.0]}
         place = (node * spacing - length / 2, height / 2)
         loads.append({"kind": "point", "point": place, "force": (0.0, -1e3), "schedule": rows})
-    faces, window = [], 5e-6
+    faces, window = [], 1e-5
     for case in ([even], loads):
         model = on_row(
             Way(interface, "predicted"),
@@ -195,10 +195,5 @@ def test_moving_load_on_a_long_beam_is_that_of_an_infinite_one(interface: str, s
     )
     near = np.abs(ahead) < 0.3
     error = np.abs(faces[1] - faces[0] - expected)[near].max() / np.abs(expected).max()
-    print(
-        share,
-        error,
-        (faces[1] - faces[0])[along // 2 - 3 : along // 2 + 4] / np.abs(expected).max(),
-        expected[37:44] / np.abs(expected).max(),
-    )
-    assert error < 0.06
+    # Left out: shear and the inertia of turning, which lower the critical speed; 0.5 % at 0.3 of it, 3.4 % at 0.6.
+    assert error < 0.13 * share**2
