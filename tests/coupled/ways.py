@@ -44,11 +44,11 @@ WAYS = [Way(interface, exchange) for interface in INTERFACES for exchange in EXC
 GLUED = Way("glued", "predicted")
 
 
-def assert_order(way: Way, errors: Sequence[float]) -> None:
+def assert_order(way: Way, errors: Sequence[float], *, within: float = 0.1) -> None:
     """The errors at steps that are halved fall with the order of the exchange."""
     rate = np.log2(errors[-2] / errors[-1])
     # Errors of 1e-4 hardly show the next order, the per cent of the lagged exchange by a tenth.
-    assert abs(rate - ORDERS[way.exchange]) < (0.15 if way.exchange == "lagged" else 0.1)
+    assert abs(rate - ORDERS[way.exchange]) < (0.15 if way.exchange == "lagged" else within)
 
 
 def relative(seen: np.ndarray, expected: np.ndarray) -> float:
