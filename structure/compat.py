@@ -1,10 +1,11 @@
 """What differs between versions of dolfinx: this module alone asks, by looking for a name, never for a number.
 
 Tested with 0.5.2 (Debian 12: UFL 2022, PETSc 3.18) and 0.9.0 (Debian 13: UFL 2024, PETSc 3.22). Read in the
-documentation and NOT tested: 0.10 (`interpolation_points` is an attribute) and 0.11 (`Geometry.dofmaps`, a list, takes
-the place of `dofmap`). The `petsc_options_prefix` that `LinearProblem` and `NonlinearProblem` demand from 0.10 on does
-not concern us: solvers are made with petsc4py and named there. The one difference outside is a name that `meshes` needs,
-which opens on nothing of ours: `gmshio`, from 0.10 on `gmsh`, in `meshes/session.py`.
+documentation and NOT tested: 0.10 (`interpolation_points` is an attribute, vectors are created of spaces) and 0.11
+(`Geometry.dofmaps`, a list, takes the place of `dofmap`). The `petsc_options_prefix` that `LinearProblem` and
+`NonlinearProblem` demand from 0.10 on does not concern us: solvers are made with petsc4py and named there. The one
+difference outside is a name that `meshes` needs, which opens on nothing of ours: `gmshio`, from 0.10 on `gmsh`, in
+`meshes/session.py`.
 """
 
 from __future__ import annotations
@@ -18,7 +19,9 @@ import dolfinx
 import numpy as np
 import ufl
 from dolfinx import fem
+from dolfinx.fem import petsc as fem_petsc
 from numpy.typing import NDArray
+from petsc4py import PETSc
 
 CELLS = {"quadrilateral": basix.CellType.quadrilateral, "triangle": basix.CellType.triangle}
 
@@ -44,6 +47,17 @@ def compiled_expression(expression: ufl.core.expr.Expr, points: NDArray[np.float
     """An expression at reference points, compiled."""
     with quiet_compiler():
         return fem.Expression(expression, points)
+
+
+def empty_vector(form: fem.Form) -> PETSc.Vec:
+    """Zeros with room for ghosts, to assemble a linear form into.
+
+    dolfinx creates it of a form up to 0.9 and of a space from 0.10 on; all versions assemble one out of a form.
+    """
+    vector = fem_petsc.assemble_vector(form)
+    with vector.localForm() as local:
+        local.set(0.0)
+    return vector
 
 
 def vector_space(domain: dolfinx.mesh.Mesh, order: int) -> fem.FunctionSpace:

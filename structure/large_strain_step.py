@@ -71,7 +71,7 @@ class LargeStrainStepper(ConservingStepper):
         self._loss = compat.compiled(self._rate * ufl.inner(stress(made), made) * dx)
 
     def _make_solver(self) -> None:
-        self._assembled = fem_petsc.create_vector(self._internal)
+        self._assembled = compat.empty_vector(self._internal)
         self._jacobian = fem_petsc.create_matrix(self._tangent)
         solver = PETSc.SNES().create(self._body.comm)
         self._excess, self._excess_vector = self._with_vector()
