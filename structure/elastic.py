@@ -42,7 +42,7 @@ class ElasticStructure:
         Length [s] of every step.
     element : {"standard", "enhanced"}, optional
         Displacements alone, or, for quadrilaterals of order 1, strains enhanced so that a coarse mesh
-        bends as it should, also near nu = 0.5. Absent: enhanced where the cells allow it.
+        bends as it should, also near nu = 0.5. Absent: enhanced where cells and theory allow it.
     theory : {"linear", "corotational", "large_strain"}
         Small strain and rotation about the reference shape, ``f_int = K u`` (`LinearTheory`); small strain in a
         frame that turns with the body (`CorotationalTheory`); St Venant-Kirchhoff (`LargeStrainTheory`).
@@ -231,7 +231,7 @@ class ElasticStructure:
         )
 
     def frequencies(self, count: int) -> NDArray[np.float64]:
-        """The lowest `count` elastic frequencies [Hz] of the free body, ascending."""
+        """The lowest `count` elastic frequencies [Hz] of small motion about the reference shape, ascending."""
         return modes.elastic_modes(self._body, self._theory.stiffness, self.material, count)[0]
 
     def release_from_mode(self, number: int, amplitude: float) -> None:

@@ -36,7 +36,8 @@ class LargeStrainStepper(ConservingStepper):
     The mesh's own quadrature (that of the linear stiffness) is used for all.
 
     Newton's method by PETSc's SNES with full steps and the exact tangent; options with the prefix
-    ``leito_`` replace its solvers.
+    ``leito_`` replace its solvers. It ends with the first correction whose square is round-off, which
+    counts on a tangent that is not older than the iterate.
 
     Source: Simo and Tarnow (1992).
     """
