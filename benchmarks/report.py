@@ -40,6 +40,7 @@ GOALS = {
     "bytes_per_disc": Goal("B", 600.0, 300.0),
     "second_start_seconds": Goal("s", 2.0, 1.0),
     "microseconds_per_step_25_discs": Goal("us", 3.0, 1.0),
+    "structure_overhead": Goal("1", 0.1, 0.0),
 }
 
 FURTHER = {
@@ -58,6 +59,10 @@ FURTHER = {
     "ratio_lammps_granular_105k": "1",
     "ratio_lammps_hooke_history_105k": "1",
     "ratio_liggghts_105k": "1",
+    "structure_overhead_1e6": "1",
+    "structure_strong_100k": "1",
+    "structure_strong_1e6": "1",
+    "structure_weak_50k": "1",
 }  # a row without a value is left out
 
 
@@ -98,6 +103,12 @@ def joined_peers(now: Mapping[str, Any]) -> dict[str, object]:
         "versions": before.get("versions", {}) | now["versions"],
         "runs": _joined(before.get("runs", []), now["runs"], "code", "discs", "cores"),
     }
+
+
+def joined_structure(now: Iterable[Rate]) -> list[Rate]:
+    """Steps of the structure in the file, with those of now in place of the same before."""
+    before = read().get("structure", []) if RESULTS.exists() else []
+    return sorted(_joined(before, now, "unknowns", "ranks"), key=lambda row: (row["unknowns"], row["ranks"]))
 
 
 def write(
@@ -153,6 +164,10 @@ def show() -> None:
             f"{rate['code']} beside the others, {rate['discs']} discs, {rate['cores']} core{'s' * (rate['cores'] > 1)}"
         )
         table.add_row(name, f"{rate['particle_steps_per_second']:.3g}", "1/s", "", "")
+    for row in content.get("structure", []):
+        name = f"step of {row['unknowns']} unknowns, {row['ranks']} rank{'s' * (row['ranks'] > 1)}; over the bare one"
+        more = row["step_seconds"] / row["bare_step_seconds"] - 1.0
+        table.add_row(name, f"{1e6 * row['step_seconds']:.3g}; {100.0 * more:+.0f} %", "us", "", "")
     console = Console(width=110)
     console.print(table)
     if (load := content["machine"]["load_average"]) > QUIET:

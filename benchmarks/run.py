@@ -1,4 +1,4 @@
-"""`make bench`: measure the speed of the particles, print one table, write results/latest.json.
+"""`make bench`: measure the speed of particles and structure, print one table, write results/latest.json.
 
 Only ratios taken in one run on one machine count. Rows that need another code are measured if
 `make bench-peers` has installed it, and stay empty otherwise. A run of some groups leaves the rest
@@ -12,7 +12,11 @@ import measures
 import peers
 import processes
 import report
+import structure_figure
+import structure_steps
 from rich.console import Console
+
+MILLION = "million"  # unknowns: two minutes, only on demand
 
 
 def main() -> None:
@@ -25,28 +29,37 @@ def main() -> None:
         "ratio": lambda: measures.size_ratio(rates),
         "start": processes.starts,
         "few": measures.few_discs,
+        "structure": lambda: structure_steps.steps(steps),
+        MILLION: lambda: structure_steps.million(steps),
     }
+    usual = [name for name in groups if name != MILLION]
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("groups", nargs="*", metavar="group", help=f"any of {', '.join(groups)}; default: all")
-    chosen = parser.parse_args().groups or list(groups)
+    parser.add_argument(
+        "groups", nargs="*", metavar="group", help=f"any of {', '.join(groups)}; default: all but {MILLION}"
+    )
+    chosen = parser.parse_args().groups or usual
     if unknown := set(chosen) - set(groups):
         parser.error(f"unknown group {', '.join(sorted(unknown))}: take any of {', '.join(groups)}")
-    rates = measures.Rates()
+    rates, steps = measures.Rates(), structure_steps.Rows()
     console = Console(stderr=True)
     values: measures.Numbers = {}
     for name in chosen:
         with console.status(f"measuring {name}"):
             values |= groups[name]()
         console.print(f"{name}: done")
-    complete = len(chosen) == len(groups)
+    complete = set(usual) <= set(chosen)
     more: dict[str, object] = {}
     if complete and peers.installed():
         with console.status("measuring LAMMPS"):
             comparison = peers.measure()
         values |= comparison.ratios
         more["peers"] = report.joined_peers(comparison.section)
+    if steps.rows:
+        more["structure"] = report.joined_structure(steps.rows)
     report.write(values, rates.rows, anew=complete, **more)
     report.show()
+    if steps.rows:
+        console.print(f"drawn: {structure_figure.draw(report.read())}")
     if "sizes" in chosen:
         console.print(f"drawn: {figure.draw(report.read())}")
 
