@@ -24,7 +24,8 @@ class BoundaryPolyline:
         solid is to the left of ``points[end] - points[start]``.
     facet_names : tuple of str, length n_f
         The name of the boundary that carries the facet: of "bottom", "right", "top", "left" for a
-        beam; "loaded_arc" or "free_arc" for a tube. Every facet is also on "outer": ask `on`.
+        beam; "loaded_arc" or "free_arc" for a tube; the given name, or "outer", for a mesh from outside.
+        Every facet is also on "outer": ask `on`.
     closed : bool
         Always True: the last facet ends at the first point.
     """

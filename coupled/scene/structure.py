@@ -69,8 +69,8 @@ class Structure(Table):
     )
     element: Literal["standard", "enhanced"] | None = Field(
         None,
-        description="formulation of elastic cells; 'enhanced', which lets coarse meshes bend, where it is "
-        "absent and the cells are quadrilaterals of order 1, else 'standard'",
+        description="formulation of elastic cells; where it is absent 'enhanced', which lets coarse meshes bend, "
+        "for quadrilaterals of order 1 and small strain, else 'standard'",
     )
     theory: Literal["linear", "corotational", "large_strain"] | None = Field(
         None,
