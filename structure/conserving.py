@@ -14,7 +14,7 @@ from structure.discrete import DiscreteBody
 from structure.errors import StepError
 from structure.frame import MeanFrame, Pose, unwrapped
 from structure.material import Rayleigh
-from structure.solver import factorise
+from structure.solver import Solve, factorise
 
 LARGEST_TURN = math.pi / 2  # of the body within a step
 
@@ -116,9 +116,7 @@ class ConservingStepper(ABC):
         right = self.force - self._internal_now()
         if self._mass_factor:
             right -= self._mass_factor * self._weighed(self.velocity)
-        self._right[:] = right
-        self._divide_by_mass(self._right_vector, self._left_vector)
-        self.acceleration[:] = self._left
+        self.acceleration[:] = self._solved(self._divide_by_mass, right)
 
     def _rigid_guess(self, now: Pose) -> NDArray[np.float64]:
         """e of the present shape moved on as a rigid body.
@@ -141,6 +139,13 @@ class ConservingStepper(ABC):
         """``M values``; the array is overwritten by the next product."""
         self._right[:] = values
         self._mass.mult(self._right_vector, self._left_vector)
+        return self._left
+
+    def _solved(self, solve: Solve, right: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Solution for a right-hand side, from the first guess zero; overwritten by the next product."""
+        self._right[:] = right
+        self._left[:] = 0.0
+        solve(self._right_vector, self._left_vector)
         return self._left
 
     def _with_vector(self) -> tuple[NDArray[np.float64], PETSc.Vec]:

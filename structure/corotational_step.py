@@ -45,7 +45,7 @@ class CorotationalStepper(ConservingStepper):
     ``sin(D/2) = d . R_m M J X/(rho0 + rho1)``, ``f_int . d = s . (w1 - w0)`` for a step of any length, and
     as ``x_m . R_m M X = cos(D/2) (rho0 + rho1)/2`` the moment of f_int about the centroid is zero.
 
-    The step is solved by corrections with ``(2/dt^2 + c_a/dt) M + (1/2 + c_b/dt) K``, factorised
+    The step is solved by corrections with ``(1 + c_a dt/2) M + (dt^2/4 + c_b dt/2) K``, factorised
     once and turned into the frame: what this leaves out is of the size of half the turn of the step and
     of w over the size of the body; where that is not small the corrections are mixed (`Mixing`).
     """
@@ -62,10 +62,10 @@ class CorotationalStepper(ConservingStepper):
         self._stiffness = stiffness
         dt = time_step
         effective = body.mass_matrix.copy()
-        effective.scale(2.0 / dt**2 + self._mass_factor / dt)
+        effective.scale(1.0 + self._mass_factor * dt / 2)
         same = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
-        effective.axpy(0.5 + self._stiffness_factor / dt, stiffness, structure=same)
-        self._correct = factorise(effective)
+        effective.axpy(dt**2 / 4 + self._stiffness_factor * dt / 2, stiffness, structure=same)
+        self._correct = factorise(effective, body.mass_matrix)
         self._mixing = Mixing(DEPTH, body.totals)
         self._strained_by = np.zeros(body.unknowns // 2, dtype=np.complex128)
 
@@ -95,9 +95,8 @@ class CorotationalStepper(ConservingStepper):
         for _ in range(SWEEPS):
             after = self._pose_after(ahead + excess)
             left = self._unbalanced(excess) - self._internal_between(now, after)
-            as_complex(self._right)[:] = as_complex(left) / turned
-            self._correct(self._right_vector, self._left_vector)
-            correction = (as_complex(self._left) * turned).view(np.float64)
+            seen = (0.5 * self._dt**2 / turned) * as_complex(left)
+            correction = (turned * as_complex(self._solved(self._correct, seen.view(np.float64)))).view(np.float64)
             size, round_off = self._sizes(correction, excess)
             if not math.isfinite(size):
                 break
