@@ -9,8 +9,9 @@ from coupled.build import WARNED_SHARE, Built, stable_ratio
 from coupled.loads import unresolved_schedules
 from coupled.scene import Scene
 from coupled.step import StepLimits, limits_of
-from structure import departures, unused_solver_options
+from structure import ElasticStructure, departures, unused_solver_options
 
+FEW_UNKNOWNS = 10_000  # up to here the lowest mode takes a fraction of a second
 INCOMPRESSIBLE = 0.45  # from here on stress at the nodes of standard cells, order 2 as well, is off by 20 % and more
 
 
@@ -39,14 +40,25 @@ def before(built: Built, limits: StepLimits | None = None) -> list[str]:
         )
     damping = getattr(built.model.structure, "damping", None)  # an elastic structure alone may have it
     if damping is not None and damping.overdamped_above < math.inf:
-        limit = damping.overdamped_above
-        hertz = limit / (2 * math.pi)
-        said.append(f"Rayleigh's stiffness_factor over-damps every mode above {limit:.4g} rad/s ({hertz:.4g} Hz)")
+        said.append(_overdamped(built.model.structure))
     if unused := unused_solver_options():
         said.append(f"no solver of this scene knows the PETSc option {', '.join(unused)}: look at its spelling")
     if scene.structure is not None:
         said += unresolved_schedules(scene.structure.loads, built.model.window)
     return said + _locking(scene)
+
+
+def _overdamped(body: ElasticStructure) -> str:
+    """A sentence on Rayleigh's stiffness factor, with the lowest mode where that is found at once."""
+    limit = body.damping.overdamped_above
+    hertz = limit / (2 * math.pi)
+    said = f"Rayleigh's stiffness_factor over-damps every mode above {limit:.4g} rad/s ({hertz:.4g} Hz)"
+    if 2 * len(body.mesh.points) > FEW_UNKNOWNS:
+        return said
+    lowest = float(body.frequencies(1)[0])
+    if lowest > hertz:
+        return f"{said}: all modes of this structure, whose lowest is at {lowest:.4g} Hz: it creeps back instead of swinging"
+    return f"{said}; the lowest of this structure is at {lowest:.4g} Hz"
 
 
 def _locking(scene: Scene) -> list[str]:
