@@ -7,9 +7,9 @@ import sys
 import time
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
+from same_run import assert_same_run
 
 from coupled.errors import LeitoError
 from coupled.output import checkpoint
@@ -41,21 +41,6 @@ def whole(place: Path, scene: Scene) -> Path:
     return run_scene(scene, out=place / "runs" / "whole", threads=1, progress=False)
 
 
-def _assert_same(left: Path, right: Path) -> None:
-    """Same history, same frames, same last state, to the bit."""
-    assert (left / "history.csv").read_text() == (right / "history.csv").read_text()
-    names = sorted(path.name for path in (left / "frames").iterdir())
-    assert names == sorted(path.name for path in (right / "frames").iterdir())
-    for name in names:
-        with h5py.File(left / "frames" / name) as a, h5py.File(right / "frames" / name) as b:
-            np.testing.assert_array_equal(a["points"], b["points"])
-    a, _ = checkpoint.load(left / "checkpoint.h5")
-    b, _ = checkpoint.load(right / "checkpoint.h5")
-    assert a.keys() == b.keys()
-    for name in a.keys() - {"run.seconds"}:
-        np.testing.assert_array_equal(a[name], b[name], err_msg=name)
-
-
 def _start(place: Path, out: str, *extra: str) -> subprocess.Popen[str]:
     sets = [part for text in QUICK for part in ("--set", text)]
     command = [*LEITO, "run", "tube.toml", "--out", f"runs/{out}", "--threads", "1", "--no-progress", *sets, *extra]
@@ -78,7 +63,7 @@ def test_ctrl_c_leaves_a_checkpoint_and_says_how_to_go_on(place: Path, scene: Sc
     assert "stopped at t = " in said and "--resume" in said and "Traceback" not in said
     stopped, _ = checkpoint.load(place / "runs" / "stopped" / "checkpoint.h5")
     assert 0 < int(stopped["model.steps_done"]) < 8000
-    _assert_same(whole, run_scene(scene, out=place / "runs" / "stopped", resume=True, threads=1, progress=False))
+    assert_same_run(whole, run_scene(scene, out=place / "runs" / "stopped", resume=True, threads=1, progress=False))
 
 
 def test_killed_run_goes_on_to_the_same_bits(place: Path, scene: Scene, whole: Path) -> None:
@@ -94,12 +79,12 @@ def test_killed_run_goes_on_to_the_same_bits(place: Path, scene: Scene, whole: P
     (killed / "frames" / "grains.000099.h5").write_bytes(b"\x89HDF\r\n half a frame")
     with open(killed / "history.csv", "a") as file:
         file.write("0.39")
-    _assert_same(whole, run_scene(scene, out=killed, resume=True, threads=1, progress=False))
+    assert_same_run(whole, run_scene(scene, out=killed, resume=True, threads=1, progress=False))
 
 
 def test_two_threads_give_the_bits_of_one(place: Path, scene: Scene, whole: Path) -> None:
     two = run_scene(scene, out=place / "runs" / "threads", threads=2, progress=False)
-    _assert_same(whole, two)
+    assert_same_run(whole, two)
 
 
 def test_a_finished_run_can_be_prolonged(place: Path, whole: Path) -> None:
