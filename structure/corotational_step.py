@@ -102,7 +102,7 @@ class CorotationalStepper(ConservingStepper):
                 break
             shrinking = min(1.0, size / last) if last else 1.0
             excess += correction if shrinking < SLOW else self._mixing.step(excess, correction)
-            if size * shrinking <= round_off or (shrinking > 0.5 and size <= NOISE * round_off):
+            if size * shrinking <= round_off or (last and shrinking > 0.5 and size <= NOISE * round_off):
                 if self._stiffness_factor:
                     self._strained_by = self._pose_after(ahead + excess).local - now.local
                 return
