@@ -10,7 +10,7 @@ def test_fall_and_rebound_converge_to_those_of_the_same_cells(way: Way) -> None:
     coarse, fine = (independent(way.interface, along=20, across=2, step=step) for step in (4e-6, 2e-6))
     expected = fine.face + (fine.face - coarse.face) / 3
     falls = [coupled(way, window, along=20, element="standard") for window in (5e-6, 2.5e-6)]
-    # 1.9 with an exchange of order 2: the first touch, a jump of the speeds, excites modes that these steps do not resolve.
+    # 1.9 with an exchange of order 2: the first touch, a jump of the speeds, excites modes beyond these steps.
     assert_order(way, [relative(fall.face, expected) for fall in falls], within=0.15)
     largest = 0.01 if way.exchange == "lagged" else 5e-6
     assert falls[-1].speed[-1] == pytest.approx(fine.speed[-1], abs=largest)
