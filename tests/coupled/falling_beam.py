@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from independent_beam import IndependentBeam
 from independent_body import motion
-from independent_contact import Discs, OnFacets, OnGluedDiscs
+from independent_contact import row_below
 from small_models import on_row
 from ways import Way
 
@@ -74,13 +74,6 @@ def coupled(way: Way, window: float, *, along: int, element: str) -> Fall:
 @functools.cache
 def independent(interface: str, *, along: int, across: int, step: float) -> Fall:
     beam = IndependentBeam(length=LENGTH, height=HEIGHT, along=along, across=across, young=YOUNG, poisson=POISSON)
-    springs, standoff = np.concatenate(ROWS), RADIUS if interface == "glued" else 0.0
-    centres = np.column_stack([springs, np.full(len(springs), -RADIUS - standoff)])
-    discs = Discs(centres=centres, radius=RADIUS, stiffness=K_N)
-    if interface == "glued":
-        contact = OnGluedDiscs(beam, discs, *beam.facet_of(springs), radius=RADIUS)
-    else:
-        contact = OnFacets(beam, discs, np.arange(along + 1))
     fall = np.tile([0.0, -SPEED], len(beam.points))
     moved = motion(
         beam,
@@ -88,7 +81,7 @@ def independent(interface: str, *, along: int, across: int, step: float) -> Fall
         step=step,
         duration=DURATION,
         every=round(EVERY / step),
-        contact=contact,
+        contact=row_below(beam, interface, np.concatenate(ROWS), radius=RADIUS, stiffness=K_N),
         velocity=fall,
     )
     momentum = moved.velocity @ beam.mass(DENSITY)

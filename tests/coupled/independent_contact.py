@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from independent_beam import IndependentBeam
 from independent_body import IndependentBody
 
 
@@ -85,3 +86,15 @@ def law(discs: Discs, overlap: np.ndarray, closing: np.ndarray) -> np.ndarray:
     """Spring and dashpot that never pull."""
     touching = overlap > 0.0
     return touching * np.maximum(0.0, discs.stiffness * overlap + discs.dashpot * closing)
+
+
+def row_below(
+    beam: IndependentBeam, interface: str, springs: np.ndarray, *, radius: float, stiffness: float
+) -> OnGluedDiscs | OnFacets:
+    """Fixed discs at the abscissae `springs` that just touch the lower face of a beam, or discs glued to it."""
+    standoff = radius if interface == "glued" else 0.0
+    centres = np.column_stack([springs, np.full(len(springs), -radius - standoff)])
+    discs = Discs(centres=centres, radius=radius, stiffness=stiffness)
+    if interface == "glued":
+        return OnGluedDiscs(beam, discs, *beam.facet_of(springs), radius=radius)
+    return OnFacets(beam, discs, np.arange(beam.along + 1))

@@ -1,0 +1,65 @@
+"""A load that runs along a long beam on springs and dashpots: the coupled run, and an infinite beam in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+from pressed_beam import DENSITY, K_N, POISSON, RADIUS, STRUCTURE, YOUNG, face, wave
+from small_models import on_row
+from ways import Way
+
+LENGTH, HEIGHT, ALONG, SPRINGS, DASHPOT = 2.0, 0.02, 80, 241, 1000.0
+SPACING, LOAD, HELD = LENGTH / ALONG, 1e3, 2e5
+PER_LENGTH = (SPRINGS - 1) / LENGTH
+FOUNDATION, MASS, BENDING = K_N * PER_LENGTH, DENSITY * HEIGHT, YOUNG / (1 - POISSON**2) * HEIGHT**3 / 12
+CRITICAL = (4 * FOUNDATION * BENDING) ** 0.25 / np.sqrt(MASS)  # speed [m/s]
+
+
+def beneath_moving_load(
+    ahead: np.ndarray, *, speed: float, bending: float, mass: float, dashpot: float, foundation: float
+) -> np.ndarray:
+    """Deflection (k,) at `ahead` [m] of a unit load that runs on an infinite beam on springs and dashpots.
+
+    ``EI w_xxxx + m V^2 w_xx - c V w_x + k w = delta``, a Fourier integral closed around its poles.
+    """
+    quartic = np.array([bending, 0.0, -mass * speed**2, -1j * dashpot * speed, foundation])
+    poles = np.roots(quartic)
+    terms = 1j * np.exp(1j * np.outer(ahead, poles)) / np.polyval(np.polyder(quartic), poles)
+    front = ahead[:, None] >= 0
+    return np.real(np.sum(np.where(front == (poles.imag > 0), np.where(front, terms, -terms), 0.0), axis=1))
+
+
+def deflection(interface: str, speed: float, window: float) -> tuple[np.ndarray, np.ndarray]:
+    """Place ahead of the load (81,) [m] and deflection (81,) [m] when the load is halfway.
+
+    The beam is held down evenly; what it shows without the running load is taken off.
+    """
+    arrivals = SPACING / speed * np.arange(1, ALONG + 2)
+    even = {"kind": "boundary", "boundary": "top", "total_force": (0.0, -HELD), "schedule": wave(90.0)[0]}
+    running = []
+    for node, arrival in enumerate(arrivals):
+        times = [arrival - SPACING / speed, arrival, arrival + SPACING / speed]
+        rows = {"kind": "table", "times": times, "factors": [0.0, 1.0, 0.0]}
+        place = (node * SPACING - LENGTH / 2, HEIGHT / 2)
+        running.append({"kind": "point", "point": place, "force": (0.0, -LOAD), "schedule": rows})
+    shape = {"length": LENGTH, "height": HEIGHT, "along": ALONG, "across": 2}
+    faces = []
+    for loads in ([even], [even, *running]):
+        model = on_row(
+            Way(interface, "predicted"),
+            window=window,
+            structure=STRUCTURE | {"element": "enhanced", "loads": loads, "beam": shape},
+            contact={"normal_stiffness": K_N, "normal_damping": DASHPOT},
+            rows=[np.linspace(0.0, LENGTH, SPRINGS)],
+            radius=RADIUS,
+        )
+        model.advance(round(arrivals[ALONG // 2] / window))
+        faces.append(face(model, 0.0))
+        assert (model.glued_force[:, 1] > 0).all()
+    return SPACING * np.arange(1, ALONG + 2) - speed * model.time, faces[1] - faces[0]
+
+
+def expected(ahead: np.ndarray, speed: float) -> np.ndarray:
+    """The same (k,) [m] of an infinite beam."""
+    return -LOAD * beneath_moving_load(
+        ahead, speed=speed, bending=BENDING, mass=MASS, dashpot=PER_LENGTH * DASHPOT, foundation=FOUNDATION
+    )
