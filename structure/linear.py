@@ -63,14 +63,23 @@ class LinearTheory:
         return balanced_displacement(self._body, self.stiffness, self._material, loads)
 
     def memory(self) -> dict[str, NDArray[np.float64]]:
-        """See `Theory`: the last force of a scheme that looks back at it."""
-        return {"force": self._body.nodes.gather(self.stepper.force)} if self.stepper.looks_back else {}
+        """See `Theory`: what a step needs of the one before."""
+        stepper, memory = self.stepper, {}
+        if stepper.looks_back:
+            memory["force"] = self._body.nodes.gather(stepper.force)
+        if stepper.damped_before is not None:
+            memory["damped"] = self._body.nodes.gather(stepper.damped_before)
+        return memory
 
     def recall(self, state: dict[str, NDArray[np.float64]]) -> None:
         """See `Theory`."""
-        if self.stepper.looks_back:
-            self.stepper.force[:] = self._body.nodes.share(state["force"])
-            self.stepper.remember_force()
+        stepper = self.stepper
+        if stepper.looks_back:
+            stepper.force[:] = self._body.nodes.share(state["force"])
+            stepper.remember_force()
+        if stepper.damped_before is not None:
+            stepper.damped_before[:] = self._body.nodes.share(state["damped"])
+            stepper.look_ahead()
 
     def _stress_probe(self) -> StressProbe:
         if self._probe is None:

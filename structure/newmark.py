@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from structure.schemes import Scheme
@@ -53,6 +54,12 @@ class NewmarkStepper:
         self._loses, self.looks_back = not scheme.conserves, not scheme.conserves or scheme.alpha_f > 0.0
         if self.looks_back:
             self._a_before, self._f_before, self._f_change = (self._u.duplicate() for _ in range(3))
+        # With the mean acceleration the velocity of a step is (v~0 + 2 v~1 + v~2)/4 of three predicted ones, whose
+        # products with C are needed anyway.
+        self._three_terms = damping is not None and scheme.conserves and not self._alpha_f
+        if self._three_terms:
+            self._damped_before, self._damped, self._ahead = (self._u.duplicate() for _ in range(3))
+            self._damped_ahead = self._u.duplicate()
         self._weights()
         self._solve = factorise(self._effective_matrix(), mass)
 
@@ -73,17 +80,37 @@ class NewmarkStepper:
 
     def start(self) -> None:
         """Acceleration that is in equilibrium with displacement, velocity and force."""
+        self._damped_known = False
         self._u.copy(self._relative)
         self._residual(self._f)
         self._a.set(0.0)
         if self._rhs.norm() > 0.0:
             factorise(self._mass, self._mass)(self._rhs, self._a)
         self.remember_force()
+        if self._three_terms:
+            self._product_with_damping(-self._v_old, self._damped_before)
+            self.look_ahead()
 
     def remember_force(self) -> None:
         """Take `force` for that at the beginning of the next step."""
         if self.looks_back:
             self._f.copy(self._f_before)
+
+    def look_ahead(self) -> None:
+        """Have C times the predicted velocity of the next step."""
+        self._product_with_damping(self._v_old, self._damped)
+        self._damped_known = True
+
+    def _product_with_damping(self, interval: float, into: PETSc.Vec) -> None:
+        """``C (v + interval a)``."""
+        self._v.copy(self._ahead)
+        self._ahead.axpy(interval, self._a)
+        self._damping.mult(self._ahead, into)
+
+    @property
+    def damped_before(self) -> NDArray[np.float64] | None:
+        """C times the predicted velocity of the last step [N/m], where the loss of the next one needs it."""
+        return self._damped_before.array if self._three_terms else None
 
     def step(self) -> None:
         """One step; `force` acts at its end."""
@@ -122,8 +149,17 @@ class NewmarkStepper:
         """
         if self._damping is None:
             return 0.0
-        self._damping.mult(self._d, self._product)
-        return float(self.increment.dot(self._product_array)) / self._dt
+        if not self._three_terms:
+            self._damping.mult(self._d, self._product)
+            return float(self.increment.dot(self._product_array)) / self._dt
+        self._product_with_damping(self._v_old, self._damped_ahead)
+        mean = self._damped_before
+        mean.axpy(2.0, self._damped)
+        mean.axpy(1.0, self._damped_ahead)
+        loss = float(self.increment.dot(mean.array_r)) / 4
+        self._damped_before, self._damped, self._damped_ahead = self._damped, self._damped_ahead, mean
+        self._damped_known = True
+        return loss
 
     def scheme_loss_of_step(self) -> float:
         """This rank's share of what the scheme itself took [J/m] in the last step.
@@ -174,6 +210,11 @@ class NewmarkStepper:
         rhs = self._rhs
         self._relative_pairs -= self.carried
         self._stiffness.mult(self._relative, rhs)
-        if self._damping is not None:
+        if self._three_terms:
+            if not self._damped_known:
+                self._damping.mult(self._v, self._damped)
+            self._damped_known = False
+            rhs.axpy(1.0, self._damped)
+        elif self._damping is not None:
             self._damping.multAdd(self._v, rhs, rhs)
         rhs.aypx(-1.0, force)
