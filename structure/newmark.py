@@ -47,7 +47,7 @@ class NewmarkStepper:
         self._product_array, self._product = arrays["product"], vectors["product"]
         self.carried = np.zeros(2)
         relative = np.zeros_like(self.displacement)
-        self._relative_array, self._relative_pairs = relative, relative.reshape(-1, 2)
+        self._relative_array, self._relative_pairs = relative, relative.view(complex)  # x + iy: one pass over both
         self._relative = PETSc.Vec().createWithArray(relative, comm=mass.comm)
         self._rhs = self._u.duplicate()
         self._mean = self._u.duplicate() if scheme.alpha_m else self._a
@@ -201,14 +201,14 @@ class NewmarkStepper:
     def strain(self) -> float:
         """This rank's share of ``u . K u/2`` [J/m]."""
         self._u.copy(self._relative)
-        self._relative_pairs -= self.carried
+        self._relative_pairs -= complex(*self.carried)
         self._stiffness.mult(self._relative, self._product)
         return float(self._relative_array.dot(self._product_array)) / 2
 
     def _residual(self, force: PETSc.Vec) -> None:
         """``rhs = f - K u - C v`` with u in `_relative`, of which `carried` is taken off."""
         rhs = self._rhs
-        self._relative_pairs -= self.carried
+        self._relative_pairs -= complex(*self.carried)
         self._stiffness.mult(self._relative, rhs)
         if self._three_terms:
             if not self._damped_known:
