@@ -163,7 +163,7 @@ def test_limit_of_a_dissipative_scheme_is_safe_and_that_of_newmark_is_not() -> N
     unevenness = []
     for ratio in (0.95 * limit, 1.9):
         model = elastic_beam(
-            f"time.step={1e-5 * np.sqrt(ratio / at_1e_5)!r}",
+            f"time.step={float(1e-5 * np.sqrt(ratio / at_1e_5))!r}",
             "structure.generalised_alpha={spectral_radius=0.9}",
             "structure.loads.0.schedule.over=0.02",
             "interface.largest_stiffness_ratio=10.0",
