@@ -16,7 +16,7 @@ import structure_figure
 import structure_steps
 from rich.console import Console
 
-MILLION = "million"  # unknowns: two minutes, only on demand
+MILLION = "million"  # unknowns: three minutes, only on demand
 
 
 def main() -> None:

@@ -53,7 +53,7 @@ def steps(rows: Rows) -> Numbers:
 
 
 def million(rows: Rows) -> Numbers:
-    """A million unknowns, whose factorisation takes most of two minutes."""
+    """A million unknowns, whose factorisation takes most of three minutes."""
     alone = rows.case(MILLION, 1)
     numbers: Numbers = {"structure_overhead_1e6": overhead(alone)}
     if len(os.sched_getaffinity(0)) > 1:
