@@ -41,10 +41,12 @@ def remedy(built: Built, sign: Sign) -> str:
     said = f"take time.step = {smaller_step(built):.6g} s"
     if not stable:
         said += f" (the limit of the present contacts is {limits.network.step:.3g} s)"
-    if interface is not None and sign.remedy in ("exchange", "structure"):
-        said += f" (r = {built.stiffness_ratio:.3g} of the coupling should be below {stable_ratio(built.scene):g})"
+    if interface is None or sign.remedy not in ("exchange", "structure"):
+        return said
+    if interface.exchange == "lagged":
+        said = f'take interface.exchange = "predicted", as "lagged" takes k dt from every dashpot, or {said}'
+    if built.stiffness_ratio > stable_ratio(built.scene):
+        said += f" (r = {built.stiffness_ratio:.3g} of the coupling should be below {stable_ratio(built.scene):.4g})"
         if interface.substeps > 1:
             said += ", or fewer interface.substeps"
-        if interface.exchange == "lagged":
-            said += ', or interface.exchange = "predicted"'
     return said

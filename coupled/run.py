@@ -191,8 +191,8 @@ class Run:
         change = on_root(self.comm, lambda: remedy(self.built, failed.sign))
         sentence = (
             f"t = {failed.time:g} s, the run is unstable: {failed.sign.what}. To change: {change}. The state at "
-            f"t = {good.step * model.window:g} s, before that, is in {self.folder.file(BEFORE_FAILURE)}; --resume with "
-            f"--set time.step, a whole fraction of {self.scene.time.step:g} s, goes on from there"
+            f"t = {good.step * model.window:g} s, before that, is in {self.folder.file(BEFORE_FAILURE)}: --resume goes "
+            f"on from there, also with --set time.step at a whole fraction of {self.scene.time.step:g} s"
         )
         record.log(sentence)
         raise Unstable(sentence) from None

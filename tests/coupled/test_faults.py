@@ -181,3 +181,12 @@ def test_a_step_that_cannot_be_taken_ends_the_run_like_a_sign(tmp_path: Path, mo
     before, _ = checkpoint.load(tmp_path / "run" / "before_failure.h5")
     assert before["model.steps_done"] == 1000
     assert read_history(tmp_path / "run" / "history.csv")["time"][-1] == pytest.approx(0.01234)
+
+
+def test_a_lagged_exchange_is_told_to_be_the_reason_and_another_goes_on(tmp_path: Path) -> None:
+    """The source's order takes k dt from every dashpot, here from none: it makes energy at any step."""
+    said = failure(load_scene("winkler_beam", [*BEAM, "interface.exchange=lagged"]), tmp_path / "run")
+    assert "at the interface" in said and 'take interface.exchange = "predicted"' in said
+    assert "should be below" not in said, "r is far below its limit"
+    sound = load_scene("winkler_beam", [*BEAM, "interface.exchange=predicted", "time.duration=0.05"])
+    run_scene(sound, out=tmp_path / "run", resume=True, threads=1, progress=False)
