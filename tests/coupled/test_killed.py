@@ -21,7 +21,7 @@ from coupled.templates import write_template
 DURATION = 0.04
 SETS = [
     f"time.duration={DURATION}", "output.history_interval=0.0005", "output.frames_per_second=250",
-    "output.checkpoint_interval=0.003", "output.figures=false", "bed.time.duration=0.3",
+    "output.checkpoint_interval=0.003", "output.figures=false", "bed.time.duration=0.3", "bed.output.figures=false",
 ]  # fmt: skip
 WAYS: dict[str, tuple[list[str], int]] = {  # changes of the scene, kills
     "predicted": ([], 10),

@@ -43,7 +43,7 @@ if case == "disk":
     Record.count = lambda self, seen: without_disk(count, self, seen)
     run.LeaveTogether = partial(run.LeaveTogether, patience=1.0)
 sys.argv = ["leito", "run", "tube.toml", "--out", "runs/" + case, "--threads", "1", "--no-progress"]
-for text in ("time.duration=0.05", "bed.time.duration=0.2", "output.figures=false"):
+for text in ("time.duration=0.05", "bed.time.duration=0.2", "output.figures=false", "bed.output.figures=false"):
     sys.argv += ["--set", text]
 cli.main()
 """
@@ -89,7 +89,8 @@ def test_a_failure_of_the_grains_stops_both_ranks(place: Path) -> None:
 
 def test_a_step_above_all_limits_stops_both_ranks(place: Path) -> None:
     """As a user meets it: the same sentence as on one rank."""
-    sets = ["time.step=3e-4", "interface.largest_stiffness_ratio=1000", "output.figures=false", "bed.time.duration=0.2"]
+    sets = ["time.step=3e-4", "interface.largest_stiffness_ratio=1000", "bed.time.duration=0.2"]
+    sets += ["output.figures=false", "bed.output.figures=false"]
     words = [word for text in sets for word in ("--set", text)]
     said = []
     for ranks in (1, 2):
