@@ -29,7 +29,7 @@ class Balance:
     error, relative_error : float
         Change of the total since the start, and over the throughput.
     interface_residual : float
-        Work that the glued grains did on the others plus work of the nodal forces on the
+        Work that the interface did on the grains plus work of the nodal forces on the
         structure: zero if no energy is lost or made at the interface.
     """
 
@@ -57,9 +57,12 @@ def take_balance(model: Model, look: ContactLook | None, start: dict[str, float]
         own = model.particles.energies(look)
         stored |= {f"grains_{name}": own[name] for name in STORED}
         losses |= {f"grains_{name}": value for name, value in own.items() if name.startswith("loss_")}
-        glued = model.particles.work_by(model.places) if model.glued is not None else 0.0
-        works |= {"walls_work": own["work_walls"], "rows_work": own["work_prescribed"] - glued}
-        residual += glued
+        given = model.interface.work(model.particles) if model.interface is not None else 0.0
+        works |= {
+            "walls_work": own["work_walls"],
+            "rows_work": own["work_prescribed"] + own.get("work_facets", 0.0) - given,
+        }
+        residual += given
     if model.structure is not None:
         body = model.structure.energies()
         stored |= {"structure_kinetic": body.kinetic, "structure_strain": body.strain}
@@ -70,7 +73,7 @@ def take_balance(model: Model, look: ContactLook | None, start: dict[str, float]
         works["loads_work"] = body.external_work
         residual += body.boundary_work
     entries = {**stored, **losses, **works}
-    if model.glued is None:
+    if model.interface is None:
         residual = 0.0
     total = sum(stored.values()) + sum(losses.values()) - sum(works.values())
     start = start or entries

@@ -16,7 +16,9 @@ import particles as dem
 import structure as fem
 from coupled.errors import LeitoError
 from coupled.exchange_limit import exchange_limit
-from coupled.glued import GluedGrains
+from coupled.facets import FacetInterface
+from coupled.glued import BODY, GluedGrains
+from coupled.interface import Interface, stiffness_ratio
 from coupled.laws import contact_law, interface_spring
 from coupled.loads import load_of
 from coupled.model import Model
@@ -24,7 +26,7 @@ from coupled.scene import Beam, RowUnder, Scene, SettledGrains
 from coupled.scene.materials import GRAINS, STRUCTURE, materials
 from coupled.scene.structure import Structure as StructureTable
 from coupled.step import damping_of, with_step
-from particles.beds import drop_height_on, lattice
+from particles.beds import lattice
 from particles.timestep import require_stable
 
 WARNED_SHARE = 0.95  # of the stable ratio
@@ -64,19 +66,19 @@ def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI
     scene = with_step(scene)
     contact = None if scene.contact is None else contact_law(scene)
     free = _free_grains(scene, bed) if comm.rank == 0 else None
-    body, glued = None, None
+    body, interface = None, None
     if scene.structure is not None:
         mesh = _mesh(scene, comm, _placement(scene, free, comm))
         body = _structure(scene, mesh)
         if scene.interface is not None:
-            glued = _glued(scene, mesh)
+            interface = _interface(scene, mesh)
     system = None
     if comm.rank == 0 and (free is not None or scene.rows):
-        system = _particles(scene, free, glued, contact, bed, threads)
+        system = _particles(scene, free, interface, contact, bed, threads)
     model = Model(
         particles=system,
         structure=body,
-        glued=glued,
+        interface=interface,
         substeps=1 if scene.interface is None else scene.interface.substeps,
         lagged=scene.interface is not None and scene.interface.exchange == "lagged",
         time_step=scene.time.step,
@@ -123,7 +125,7 @@ def _mesh(scene: Scene, comm: MPI.Intracomm, centroid: tuple[float, float]) -> m
 
 
 def _placement(scene: Scene, free: dem.Grains | None, comm: MPI.Intracomm) -> tuple[float, float]:
-    """Centroid of the structure; `on_bed`: lowered until the first glued grain touches."""
+    """Centroid of the structure; `on_bed`: lowered until its interface touches."""
     place, shape = scene.structure.placement, scene.structure.shape
     if place.y != "on_bed":
         return (place.x, place.y + place.gap)
@@ -131,18 +133,15 @@ def _placement(scene: Scene, free: dem.Grains | None, comm: MPI.Intracomm) -> tu
     if comm.rank == 0:
         top = float(np.max(free.y[: free.n_free] + free.radius[: free.n_free])) if free is not None else 0.0
         above = (place.x, top + 2.0 * shape.half_extent[1])
-        glued = _glued(scene, _mesh(scene, MPI.COMM_SELF, above))
-        radius = np.full(len(glued), glued.radius)
-        fall = min(
-            drop_height_on(free, glued.reference, radius) if free is not None else math.inf,
-            float(np.min(glued.reference[:, 1] - radius)),
-        )
+        fall = _interface(scene, _mesh(scene, MPI.COMM_SELF, above)).fall_onto(free)
         height = above[1] - fall + place.gap
     return (place.x, comm.bcast(height, root=0))
 
 
-def _glued(scene: Scene, mesh: meshes.StructureMesh) -> GluedGrains:
+def _interface(scene: Scene, mesh: meshes.StructureMesh) -> Interface:
     table = scene.interface
+    if table.kind == "facets":
+        return FacetInterface(mesh.outer_polyline, boundaries=table.boundaries, closest=_smallest_diameter(scene))
     return GluedGrains(
         mesh.outer_polyline,
         per_facet=table.grains_per_facet(scene.structure.shape),
@@ -150,6 +149,14 @@ def _glued(scene: Scene, mesh: meshes.StructureMesh) -> GluedGrains:
         diameter=table.diameter,
         mean_velocity=table.velocity == "mean",
     )
+
+
+def _smallest_diameter(scene: Scene) -> float | None:
+    """Of the grains that may meet the structure [m]; None without any."""
+    radii = [row.radius for row in scene.rows]
+    if scene.first_grains is not None:
+        radii.append(scene.first_grains.smallest_radius)
+    return 2.0 * min(radii) if radii else None
 
 
 def _structure(scene: Scene, mesh: meshes.StructureMesh) -> fem.Structure:
@@ -190,23 +197,25 @@ def _scheme(table: StructureTable) -> fem.Scheme:
 def _particles(
     scene: Scene,
     free: dem.Grains | None,
-    glued: GluedGrains | None,
+    interface: Interface | None,
     contact: dem.Contact,
     bed: Saved | None,
     threads: int,
 ) -> dem.ParticleSystem:
     grains = free if free is not None else dem.Grains.discs(np.zeros((0, 2)), np.zeros(0), 1.0)
     of = materials(scene).index
-    if glued is not None:
-        grains = grains.with_prescribed(glued.reference, glued.radius, Model.GLUED, material=of(STRUCTURE))
+    facets = None
+    if interface is not None:
+        grains = interface.enter(grains, of(STRUCTURE))
+        facets = interface.facets(of(STRUCTURE))
     for number, row in enumerate(scene.rows):
-        grains = grains.with_prescribed(
-            _row_places(scene, row, glued), row.radius, Model.GLUED + 1 + number, material=of(row.name or GRAINS)
-        )
+        places = _row_places(scene, row, interface)
+        grains = grains.with_prescribed(places, row.radius, BODY + 1 + number, material=of(row.name or GRAINS))
     require_stable(grains, contact, scene.time.step)
     options = {
         "time_step": scene.time.step,
         "walls": _walls(scene),
+        "facets": facets,
         "gravity": scene.gravity,
         "threads": threads,
         "damping": damping_of(scene),
@@ -218,7 +227,7 @@ def _particles(
     bodies = grains.bodies()
     for number, row in enumerate(scene.rows):
         if not isinstance(row, RowUnder):
-            system.set_velocity(bodies[Model.GLUED + 1 + number], np.array(row.velocity))
+            system.set_velocity(bodies[BODY + 1 + number], np.array(row.velocity))
     return system
 
 
@@ -229,19 +238,15 @@ def _walls(scene: Scene) -> list[dem.Wall]:
     return [replace(wall, material=materials(scene).index(wall.name)) for wall in walls]
 
 
-def _row_places(scene: Scene, row: Any, glued: GluedGrains | None) -> NDArray[np.float64]:
+def _row_places(scene: Scene, row: Any, interface: Interface | None) -> NDArray[np.float64]:
     if not isinstance(row, RowUnder):
         return np.linspace(row.start, row.end, row.count)
-    if glued is None:
-        raise LeitoError(f'rows under "{row.under}" need glued grains: add the table [interface]')
-    polyline = glued.polyline
-    own = GluedGrains(
-        polyline,
-        per_facet=scene.interface.grains_per_facet(scene.structure.shape),
-        boundaries=(row.under,),
-        diameter=2.0 * glued.radius,
-    )
-    return own.reference - np.array([0.0, glued.radius + row.radius])
+    if interface is None:
+        raise LeitoError(f'rows under "{row.under}" need a structure above: add the table [interface]')
+    per_facet = scene.interface.grains_per_facet(scene.structure.shape)
+    own = GluedGrains(interface.polyline, per_facet=per_facet, boundaries=(row.under,))
+    standoff = interface.radius if math.isfinite(interface.radius) else 0.0
+    return own.reference - np.array([0.0, standoff + row.radius])
 
 
 def stable_ratio(scene: Scene) -> float:
@@ -252,12 +257,14 @@ def stable_ratio(scene: Scene) -> float:
 
 def _stiffness_ratio(scene: Scene, model: Model, contact: dem.Contact | None, comm: MPI.Intracomm) -> float:
     """The coupling's r; refused above the scheme's limit."""
-    if model.glued is None:
+    interface = model.interface
+    if interface is None:
         return 0.0
-    spring = comm.bcast(
-        None if model.particles is None else interface_spring(scene, contact, model.particles.grains), root=0
-    )
-    ratio = model.glued.stiffness_ratio(*spring, model.window, model.structure.acceleration_by)
+    spring = None
+    if model.particles is not None:
+        spring = interface_spring(scene, contact, model.particles.grains, interface.radius)
+    spring = comm.bcast(spring, root=0)
+    ratio = stiffness_ratio(interface.operator, *spring, model.window, model.structure.acceleration_by)
     limit = scene.interface.largest_stiffness_ratio or stable_ratio(scene)
     if ratio > limit:
         raise LeitoError(

@@ -65,7 +65,7 @@ def models(scene: Scene) -> list[str]:
         "gravity": any(scene.gravity),
         f"{scene.structure.kind} structure" if scene.structure else "": scene.structure is not None,
         f"{_theory(scene)} theory": _theory(scene) is not None,
-        "glued interface": scene.interface is not None,
+        f"{scene.interface.kind} interface" if scene.interface else "": scene.interface is not None,
     }
     return [name for name, wanted in named.items() if wanted]
 
@@ -128,10 +128,9 @@ def _structure_rows(scene: Scene, built: Built) -> list[Row]:
         ("structure", "step", f"{body.time_step:.4g} s"),
         *load_rows(scene.structure.loads),
     ]
-    if built.model.glued is not None:
-        glued = built.model.glued
+    if built.model.interface is not None:
         rows += [
-            ("interface", "glued grains, diameter", f"{len(glued)}, {2 * glued.radius:.4g} m"),
+            ("interface", *built.model.interface.describe()),
             (
                 "interface",
                 f"stiffness ratio r (stable up to {stable_ratio(scene):.4g})",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from coupled.balance import Balance
+from coupled.glued import BODY
 from coupled.model import Model
 from particles.spots import deepest_touch
 
@@ -17,9 +18,7 @@ def name_of_grain(model: Model, place: int) -> str:
     if body < 0:
         return f"grain {grains.number[place]} {at}"
     within = place - grains.bodies()[body].start
-    return (
-        f"glued grain {within} {at}" if body == model.GLUED and model.glued is not None else f"row grain {within} {at}"
-    )
+    return f"glued grain {within} {at}" if body == BODY else f"row grain {within} {at}"
 
 
 def touch_of(model: Model, place: int) -> str:
@@ -30,8 +29,10 @@ def touch_of(model: Model, place: int) -> str:
         return grain
     if touch.partner is not None:
         partner = name_of_grain(model, touch.partner)
-    else:
+    elif touch.wall is not None:
         partner = f"wall {system.walls[touch.wall].name!r}"
+    else:
+        partner = "the boundary of the structure"
     return (
         f"{grain} and {partner} (overlap {touch.depth:.3g} of the smaller radius, "
         f"{'closing' if touch.approach >= 0.0 else 'parting'} at {abs(touch.approach):.3g} m/s)"

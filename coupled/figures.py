@@ -22,7 +22,7 @@ from coupled.output import history
 from coupled.output.folder import SCENE
 from coupled.output.frames import read_frame
 
-FREE = -1
+FREE, GLUED = -1, 0
 WIDTH = 7.0
 
 
@@ -190,15 +190,14 @@ def penetration(run: _Files) -> Figure | None:
 
 
 def interface_forces(run: _Files) -> Figure | None:
-    """Vertical force per glued grain and per node along the lower half of the structure."""
+    """Vertical force per glued grain, or of each grain on the facets, and per node of the structure's lower half."""
     if run.grains is None or run.structure is None or "grain_force" not in run.structure:
         return None
-    glued = run.grains["body"] == 0
     places = run.structure["points"] + run.structure["displacement"][:, :2]
     middle = 0.5 * (places[:, 1].min() + places[:, 1].max())
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(WIDTH, 5.4), sharex=True, layout="constrained")
     pairs = (
-        (upper, run.grains["points"][glued], run.grains["force"][glued, 1], "per glued grain"),
+        (upper, *_contact_forces(run.grains)),
         (lower, places, run.structure["grain_force"][:, 1], "per node"),
     )
     for axes, points, force, label in pairs:
@@ -212,8 +211,19 @@ def interface_forces(run: _Files) -> Figure | None:
     return figure
 
 
+def _contact_forces(grains: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, str]:
+    """Points, vertical forces there, and what they belong to."""
+    if "facet_force" in grains:
+        touching = grains["facet_force"].any(axis=1)
+        return grains["points"][touching], grains["facet_force"][touching, 1], "of a touching grain"
+    glued = grains["body"] == GLUED
+    return grains["points"][glued], grains["force"][glued, 1], "per glued grain"
+
+
 def _outermost(points: np.ndarray) -> np.ndarray:
     """Extreme points, which keep the axis as wide as the structure."""
+    if not len(points):
+        return np.zeros(0, bool)
     return (points[:, 0] == points[:, 0].min()) | (points[:, 0] == points[:, 0].max())
 
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_matrix
 
 from coupled.errors import LeitoError
+from coupled.interface import Pushed, shares
 from meshes import BoundaryPolyline
+from particles import Grains, ParticleSystem
+from particles.beds import drop_height_on
 
 Floats = NDArray[np.float64]
-POWER_STEPS, POWER_TOLERANCE = 300, 1e-4  # of the power iteration for the stiffness ratio
+BODY = 0  # number of the glued grains among the prescribed bodies
 
 
 class GluedGrains:
@@ -71,10 +73,10 @@ class GluedGrains:
         closing = facets[np.isin(facets[:, 1], open_ends)]
         first, second = np.append(first, closing[:, 0]), np.append(second, closing[:, 1])
         fraction = np.append(fraction, np.ones(len(closing)))
-        self.operator = _weights(first, second, fraction, len(polyline.points))
+        self.operator = shares(first, second, fraction, len(polyline.points))
         self._transpose = self.operator.T.tocsr()
         half = np.full(len(fraction), 0.5)
-        self._velocity = _weights(first, second, half, len(polyline.points)) if mean_velocity else None
+        self._velocity = shares(first, second, half, len(polyline.points)) if mean_velocity else None
         spacing = float(polyline.lengths()[carrying].min()) / per_facet
         self.radius = 0.5 * (spacing if diameter is None else diameter)
         if 2.0 * self.radius > spacing * (1.0 + 1e-9):
@@ -99,37 +101,40 @@ class GluedGrains:
         """Forces (n_b, 2) [N/m] on the nodes from forces (n_glued, 2) on the glued grains."""
         return self._transpose @ force
 
-    def stiffness_ratio(
-        self,
-        stiffness: float,
-        dashpot: float,
-        interval: float,
-        acceleration_by: Callable[[Floats], Floats],
-    ) -> float:
-        """The coupling's ``r = H^2 (k + 2 c/H) lambda``, with lambda the largest eigenvalue of P M^-1 P^T.
+    def describe(self) -> tuple[str, str]:
+        return "glued grains, diameter", f"{len(self)}, {2 * self.radius:.4g} m"
 
-        That of every glued grain on a spring k [N/m] and a dashpot c [N s/m] to a fixed partner, H
-        [s] the structure's step: the predicted exchange is stable up to r = 2 (one mode that
-        alternates in sign; the structure's own stiffness does not move the limit). Free partners
-        give way, so a bed of grains bears more. `acceleration_by` maps nodal forces (n_b, 2) to
-        boundary accelerations (n_b, 2); power iteration.
-        """
-        force = np.random.default_rng(0).normal(size=(len(self), 2))
-        growth = 0.0
-        for _ in range(POWER_STEPS):
-            force /= np.linalg.norm(force)
-            force = self.operator @ acceleration_by(self.nodal_forces(force))
-            before, growth = growth, float(np.linalg.norm(force))
-            if abs(growth - before) <= POWER_TOLERANCE * growth:
-                break
-        return (interval**2 * stiffness + 2.0 * interval * dashpot) * growth
+    def enter(self, grains: Grains, material: int) -> Grains:
+        return grains.with_prescribed(self.reference, self.radius, BODY, material=material)
 
+    def facets(self, material: int) -> None:
+        return None
 
-def _weights(first: NDArray[np.int64], second: NDArray[np.int64], fraction: Floats, nodes: int) -> csr_matrix:
-    """Rows with ``1 - s`` at the first node and s at the second."""
-    rows = np.arange(len(fraction))
-    values = np.concatenate([1.0 - fraction, fraction])
-    places = (np.concatenate([rows, rows]), np.concatenate([first, second]))
-    matrix = csr_matrix((values, places), shape=(len(fraction), nodes))
-    matrix.eliminate_zeros()
-    return matrix
+    def fall_onto(self, grains: Grains | None) -> float:
+        floor = float(np.min(self.reference[:, 1] - self.radius))
+        radius = np.full(len(self), self.radius)
+        return floor if grains is None else min(floor, drop_height_on(grains, self.reference, radius))
+
+    def move(self, particles: ParticleSystem, displacement: Floats, before: Floats, interval: float) -> None:
+        velocity = self.velocities((displacement - before) / interval)
+        particles.steer(self._own(particles), self.places(displacement), interval, velocity)
+
+    def forces(self, particles: ParticleSystem) -> Pushed:
+        return self._pushed(particles.force_on(self._own(particles)))
+
+    def impulses(self, particles: ParticleSystem) -> Pushed:
+        return self._pushed(particles.impulse_on(self._own(particles)))
+
+    def _pushed(self, force: Floats) -> Pushed:
+        return Pushed(self.nodal_forces(force), force.sum(axis=0))
+
+    def _own(self, particles: ParticleSystem) -> slice:
+        """Places of the glued grains, the first of the prescribed ones."""
+        first = particles.grains.n_free
+        return slice(first, first + len(self))
+
+    def contact_forces(self, particles: ParticleSystem) -> Floats:
+        return particles.force_on(self._own(particles))
+
+    def work(self, particles: ParticleSystem) -> float:
+        return particles.work_by(self._own(particles))

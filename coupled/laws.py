@@ -87,15 +87,15 @@ def choose(scene: Scene) -> Choice:
     return Choice(numbers=numbers, mass=mass, radius=grains.smallest_radius, speed=speed, overlap=overlap)
 
 
-def interface_spring(scene: Scene, law: dem.Contact, grains: dem.Grains) -> tuple[float, float]:
-    """Stiffest spring [N/m] and strongest dashpot [N s/m] that a glued grain may meet.
+def interface_spring(scene: Scene, law: dem.Contact, grains: dem.Grains, radius: float) -> tuple[float, float]:
+    """Stiffest spring [N/m] and strongest dashpot [N s/m] that an interface of some `radius` [m] may meet.
 
     Hertz's spring by its slope at an overlap of 5 % of the smallest radius, with the largest
     partner. Dashpots that follow from a restitution with the mass of the heaviest free grain:
     nothing is heavier, as two prescribed grains have none.
     """
-    glued, partner = float(grains.radius[grains.n_free]), float(grains.radius.max())
-    overlap, effective = ALLOWED_OVERLAP * float(grains.radius.min()), glued * partner / (glued + partner)
+    partner = float(grains.radius.max())
+    overlap, effective = ALLOWED_OVERLAP * float(grains.radius.min()), partner / (1.0 + partner / radius)
     mass = float(grains.mass.max())
     springs = []
     for model in _models_of(law, scene, STRUCTURE):

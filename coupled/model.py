@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coupled.glued import GluedGrains
+from coupled.interface import Interface, Pushed
 from particles import ParticleSystem
 from structure import Structure, agreed_force, withhold_force
 
@@ -21,14 +21,14 @@ class Model:
 
     One coupled step of length ``H = substeps dt``:
 
-    - predicted (default): the glued grains move to the predicted boundary ``u + H v + H^2 a/2``
+    - predicted (default): the interface moves to the predicted boundary ``u + H v + H^2 a/2``
       while the grains take their `substeps`; the contact force goes to the nodes at the new time;
       the structure steps. With k substeps the force is the mean of those at ``H/k, 2 H/k ... H``, which
       belongs to ``(k + 1)/(2 k) H``; the last two means are extrapolated to the window's end,
       ``f + (k - 1)/(2 k) (f - f_old)``. Given to the nodes as it is, the mean lags and feeds energy into
       the interface at any step.
-    - lagged (the source's order): the structure steps with the forces of the last window; the glued
-      grains move to where it went while the grains take their substeps.
+    - lagged (the source's order): the structure steps with the forces of the last window; the
+      interface moves to where it went while the grains take their substeps.
 
     Under MPI the structure lives on all ranks, the grains on rank 0, where `particles` is not None.
 
@@ -36,39 +36,43 @@ class Model:
     ----------
     particles : ParticleSystem, optional
     structure : Structure, optional
-    glued : GluedGrains, optional
-        Needed with both; its grains are the prescribed body `GLUED` of `particles`.
+    interface : Interface, optional
+        Needed with both; its grains or facets are those of `particles`.
     substeps : int
         Grain steps per structure step.
     lagged : bool
         The source's order of the exchange.
-    """
 
-    GLUED = 0
+    Attributes
+    ----------
+    nodal_force : (n_b, 2)
+        Of the grains on the boundary nodes in the last window [N/m], its mean with sub-cycling.
+    reaction : (2,)
+        Its resultant, from the contacts themselves [N/m].
+    """
 
     def __init__(
         self,
         *,
         particles: ParticleSystem | None = None,
         structure: Structure | None = None,
-        glued: GluedGrains | None = None,
+        interface: Interface | None = None,
         substeps: int = 1,
         lagged: bool = False,
         time_step: float,
     ) -> None:
-        self.particles, self.structure, self.glued = particles, structure, glued
+        self.particles, self.structure, self.interface = particles, structure, interface
         self.substeps, self.lagged = substeps, lagged
         self.window = substeps * time_step
         self.steps_done = 0
         self.seconds = {"grains": 0.0, "structure": 0.0, "exchange": 0.0}
         self._boundary = None if structure is None else structure.boundary_displacement
-        self.glued_force = np.zeros((0 if glued is None else len(glued), 2))
         self.nodal_force = np.zeros_like(structure.polyline.points) if structure is not None else np.zeros((0, 2))
-        if particles is not None and glued is not None:
-            self.places = particles.grains.bodies()[self.GLUED]
+        self.reaction = np.zeros(2)
+        if particles is not None and interface is not None:
             particles.start()
-            self._collect(particles.force_on(self.places))
-        if structure is not None and glued is not None:
+            self._take(interface.forces(particles))
+        if structure is not None and interface is not None:
             structure.begin_under(self.nodal_force)
 
     @property
@@ -83,7 +87,7 @@ class Model:
             if self.particles is not None:
                 self.particles.advance(steps * self.substeps)
             self.seconds["grains"] += time.perf_counter() - started
-        elif self.glued is None:
+        elif self.interface is None:
             started = time.perf_counter()
             for _ in range(steps):
                 self.structure.advance(self.nodal_force)
@@ -117,10 +121,9 @@ class Model:
         """Take the grains through one window that ends with the boundary at `displacement`."""
         if self.particles is None:
             return
-        particles, glued = self.particles, self.glued
-        velocity = glued.velocities((displacement - self._boundary) / self.window)
+        particles, interface = self.particles, self.interface
+        interface.move(particles, displacement, self._boundary, self.window)
         self._boundary = displacement
-        particles.steer(self.places, glued.places(displacement), self.window, velocity)
         started = time.perf_counter()
         try:
             particles.advance(self.substeps)
@@ -131,23 +134,23 @@ class Model:
         self.seconds["grains"] += taken
         self.seconds["exchange"] -= taken
         if self.substeps == 1:
-            self._collect(particles.force_on(self.places))
+            self._take(interface.forces(particles))
         else:
-            self._collect(particles.impulse_on(self.places) / self.window)
+            received = interface.impulses(particles)
+            self._take(Pushed(received.nodal / self.window, received.resultant / self.window))
 
-    def _collect(self, force: Floats) -> None:
-        self.glued_force = force
-        self.nodal_force = self.glued.nodal_forces(force)
+    def _take(self, pushed: Pushed) -> None:
+        self.nodal_force, self.reaction = pushed
 
     @property
-    def reaction(self) -> Floats:
-        """Resultant (2,) [N/m] of the grains on the structure in the last window."""
-        return self.glued_force.sum(axis=0)
+    def contact_force(self) -> Floats:
+        """Forces (k, 2) [N/m] on the structure now: one for each glued grain; with facets one for each grain."""
+        return self.interface.contact_forces(self.particles)
 
     def state(self) -> dict[str, NDArray[Any]]:
         """Everything that is needed to go on with the same bits; whole on rank 0."""
         saved: dict[str, NDArray[Any]] = {"model.steps_done": np.array(self.steps_done)}
-        saved["model.glued_force"] = self.glued_force.copy()
+        saved |= {"model.nodal_force": self.nodal_force.copy(), "model.reaction": self.reaction.copy()}
         if self.structure is not None:
             saved["model.boundary"] = self._boundary.copy()
             saved |= {f"structure.{name}": array for name, array in self.structure.state().items()}
@@ -163,8 +166,7 @@ class Model:
             self._boundary = np.array(saved["model.boundary"])
         if self.particles is not None:
             self.particles.restore(_part(saved, "particles."))
-            if self.glued is not None:
-                self._collect(np.array(saved["model.glued_force"]))
+            self._take(Pushed(np.array(saved["model.nodal_force"]), np.array(saved["model.reaction"])))
 
 
 def _part(saved: Mapping[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:

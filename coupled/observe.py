@@ -58,7 +58,7 @@ def observe(model: Model, start: dict[str, float] | None) -> Observation:
     if model.particles is not None and model.particles.grains.n_free:
         numbers |= _grain_numbers(model, look)
     numbers["ledger_error"], numbers["ledger_relative_error"] = balance.error, balance.relative_error
-    if model.glued is not None:
+    if model.interface is not None:
         numbers["interface_residual"] = balance.interface_residual
     if model.particles is not None:
         numbers["momentum_residual"] = momentum_residual(model)
@@ -68,9 +68,9 @@ def observe(model: Model, start: dict[str, float] | None) -> Observation:
 def momentum_residual(model: Model) -> float:
     """Force on grains and walls plus force on nodes, over the sum of magnitudes: round-off."""
     residual = model.particles.force_residual()
-    scale = float(np.abs(model.glued_force).sum())
+    scale = float(np.abs(model.nodal_force).sum())
     if scale > 0.0:
-        gap = np.abs(model.nodal_force.sum(axis=0) - model.glued_force.sum(axis=0)).max()
+        gap = np.abs(model.nodal_force.sum(axis=0) - model.reaction).max()
         residual = max(residual, float(gap) / scale)
     return residual
 
@@ -79,7 +79,7 @@ def _structure_numbers(model: Model) -> dict[str, float]:
     body = model.structure
     applied, centroid, peaks = body.external_force(), body.centroid(), body.peaks()
     numbers = {"applied_x": applied[0], "applied_y": applied[1]}
-    if model.glued is not None:
+    if model.interface is not None:
         numbers |= {"reaction_x": model.reaction[0], "reaction_y": model.reaction[1]}
     beyond = {"local_rotation": peaks.local_rotation, "compression": peaks.compression}
     return numbers | {

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import particles as dem
+from coupled.glued import BODY
 from coupled.laws import contact_law
 from coupled.model import Model
 from coupled.scene import RowUnder, Scene
@@ -50,19 +51,19 @@ def _packing_limit(scene: Scene) -> float:
 
 
 def _sample(scene: Scene) -> dem.Grains:
-    """A free grain of each size, and two neighbours of each body of prescribed ones."""
+    """A free grain of each size, and two neighbours of each body of prescribed ones; facets count as walls."""
     table, interface = scene.first_grains, scene.interface
     radius = np.array([size.radius for size in table.sizes])
     sample = dem.Grains.discs(np.zeros((len(radius), 2)), radius, table.density)
-    if interface is not None:
+    if interface is not None and interface.kind == "glued":
         spacing = interface.smallest_spacing(scene.structure.shape)
-        sample = _neighbours(sample, spacing, 0.5 * (interface.diameter or spacing), Model.GLUED)
+        sample = _neighbours(sample, spacing, 0.5 * (interface.diameter or spacing), BODY)
     for number, row in enumerate(scene.rows):
         if isinstance(row, RowUnder):
             spacing = interface.smallest_spacing(scene.structure.shape)
         else:
             spacing = math.dist(row.start, row.end) / max(row.count - 1, 1) or 2.0 * row.radius
-        sample = _neighbours(sample, spacing, row.radius, Model.GLUED + 1 + number)
+        sample = _neighbours(sample, spacing, row.radius, BODY + 1 + number)
     return sample
 
 

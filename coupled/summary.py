@@ -44,7 +44,7 @@ def summarise(
         "packing_dt_ratio": limits.of_packing if limits is not None else 0.0,
         "network_dt_ratio": limits.of_network if limits is not None else 0.0,
         "stiffness_ratio_r": built.stiffness_ratio,
-        "stable_ratio": stable_ratio(built.scene) if model.glued is not None else 0.0,
+        "stable_ratio": stable_ratio(built.scene) if model.interface is not None else 0.0,
         "ledger_relative_error": numbers["ledger_relative_error"],
         "ledger_error": numbers["ledger_error"],
         "energy_turned_over": seen.balance.throughput,

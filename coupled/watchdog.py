@@ -130,7 +130,7 @@ def _energy_sign(model: Model, made: float, share: float, now: Balance, then: Ba
     if then is not None:
         text += f" ({culprit.fastest_line(now, then)})"
     residual = now.interface_residual - (then.interface_residual if then is not None else 0.0)
-    if model.glued is not None and abs(residual) > 0.5 * made:
+    if model.interface is not None and abs(residual) > 0.5 * made:
         return Sign(f"{text}, at the interface; liveliest is {culprit.liveliest_node(model)}", "exchange")
     if model.particles is None or not model.particles.grains.n_free:
         return Sign(f"{text}; liveliest is {culprit.liveliest_node(model)}", "structure")

@@ -81,3 +81,25 @@ def drop_height_on(grains: Grains, position: NDArray[np.float64], radius: NDArra
             clear = y - grains.y[free][under] - np.sqrt(reach[under] ** 2 - aside[under] ** 2)
             lowest = min(lowest, float(clear.min()))
     return lowest
+
+
+def drop_height_of_facets(grains: Grains, points: NDArray[np.float64], facets: NDArray[np.int64]) -> float:
+    """How far facets (m, 2) between nodes (n, 2) can be lowered before one touches a free grain from above [m].
+
+    The body lies to the left of each facet. Infinite if none is below.
+    """
+    nodes = points[np.unique(facets)]
+    lowest = drop_height_on(grains, nodes, np.zeros(len(nodes)))
+    free = slice(grains.n_free)
+    x, y, radius = grains.x[free], grains.y[free], grains.radius[free]
+    for start, end in points[facets]:
+        length = float(np.hypot(*(end - start)))
+        tx, ty = (end - start) / length
+        if tx <= 0.0:
+            continue  # it faces upwards
+        # its outward normal is (ty, -tx): the clearance r falls by tx for each metre it is lowered
+        fall = ((x - start[0]) * ty - (y - start[1]) * tx - radius) / tx
+        foot = (x - start[0]) * tx + (y - start[1] + fall) * ty
+        below = (foot >= 0.0) & (foot <= length) & (fall > 0.0)
+        lowest = min(lowest, float(fall[below].min(initial=np.inf)))
+    return float(lowest)

@@ -175,7 +175,8 @@ class FacetContacts:
         return force
 
     def touching(self, grains: Grains) -> Floats:
-        """Touching grains and features (k, 5): place of the grain, charge, overlap [m], normal into the body."""
+        """Touching grains and features (k, 7): place of the grain, charge, overlap [m], normal into the body, its
+        velocity [m/s]."""
         return features.touching_features(grains.x, grains.y, grains.radius, self.arrays)
 
     @property

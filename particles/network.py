@@ -147,7 +147,7 @@ def _walls(system: ParticleSystem) -> _Contacts:
 
 def _facets(system: ParticleSystem) -> _Contacts:
     g, facets = system.grains, system.facets
-    i, charge, delta, *normal = facets.touching(g).T
+    i, charge, delta, *normal = facets.touching(g).T[:5]
     free = i < g.n_free
     i, charge, delta, normal = i[free].astype(np.int64), charge[free], delta[free], np.column_stack(normal)[free]
     material = np.broadcast_to(facets.arrays.material, len(i))

@@ -18,13 +18,13 @@ class Touch:
     grain : int
         Place of the grain in the arrays.
     partner : int or None
-        Place of the other grain; None at a wall or a boundary.
+        Place of the other grain; None at a wall or a facet.
     wall : int or None
-        Number of the wall.
+        Number of the wall; None at another grain or a facet.
     depth : float
         Overlap over the smaller radius.
     approach : float
-        Speed [m/s] at which the two centres (the centre and the wall) come closer; negative where they part.
+        Speed [m/s] at which the two centres (the centre and the wall or facet) come closer; negative where they part.
     """
 
     grain: int
@@ -35,7 +35,7 @@ class Touch:
 
 
 def deepest_touch(system: ParticleSystem, grain: int) -> Touch | None:
-    """The deepest contact of the grain at a place with another grain or a wall; None if it has none."""
+    """The deepest contact of the grain at a place with another grain, a wall or a facet; None if it has none."""
     g, listed = system.grains, system.list
     found = [_touch_of_pair(system, grain, int(j)) for j in _partners(system, grain)]
     for w in listed.walls.wall[listed.walls.grain == grain]:
@@ -44,6 +44,12 @@ def deepest_touch(system: ParticleSystem, grain: int) -> Touch | None:
         approach = -float(normal @ [g.vx[grain] - listed.walls.vx[w], g.vy[grain] - listed.walls.vy[w]])
         depth = float((g.radius[grain] - gap) / g.radius[grain])
         found.append(Touch(grain=grain, partner=None, wall=int(w), depth=depth, approach=approach))
+    if system.facets is not None:
+        for place, _, delta, nx, ny, vx, vy in system.facets.touching(g):
+            if place == grain:
+                approach = float(nx * (g.vx[grain] - vx) + ny * (g.vy[grain] - vy))
+                depth = float(delta / g.radius[grain])
+                found.append(Touch(grain=grain, partner=None, wall=None, depth=depth, approach=approach))
     return max((touch for touch in found if touch.depth > 0.0), key=lambda touch: touch.depth, default=None)
 
 

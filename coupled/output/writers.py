@@ -44,10 +44,12 @@ class Writers:
                 "contacts": seen.look.contacts,
                 "body": grains.body,
             }
+            if model.particles.facets is not None:
+                data["facet_force"] = model.contact_force
             self.grains.write(model.time, grains.position[order], {name: a[order] for name, a in data.items()})
         if fields is not None:
             data = dict(fields.point_data)
-            if model.glued is not None:
+            if model.interface is not None:
                 data["grain_force"] = _on_mesh(model, fields)
             self.structure.write(model.time, fields.points, data, cells=fields.cells, kind=fields.cell_kind)
 

@@ -1,4 +1,4 @@
-"""Tables of the glued grains and of the rows of fixed grains."""
+"""Tables of the interface and of the rows of fixed grains."""
 
 from __future__ import annotations
 
@@ -14,13 +14,19 @@ ROW_NAME = Field(None, description="name of its material in the contact law; abs
 
 
 class Interface(Table):
-    """Grains glued to the boundary of the structure: the door between both physics."""
+    """The door between both physics: grains glued to the boundary of the structure, or its facets themselves.
 
-    kind: Literal["glued"] = Field("glued", description="kind of interface")
+    Facets need nothing more than the boundaries. What is said of glued grains may stay in a scene
+    with facets, so that one key changes the interface; rows `under` a boundary take their number from it.
+    """
+
+    kind: Literal["glued", "facets"] = Field(
+        "glued", description="what grains meet: grains on the boundary, or its facets"
+    )
     per_facet: Count | None = Field(None, description="glued grains per facet: one on each node, the others between")
     count: Count | None = Field(None, description="glued grains in all, instead of per_facet")
     diameter: Positive | None = Field(None, description="diameter of a glued grain [m]; absent: the smallest spacing")
-    boundaries: tuple[str, ...] = Field(("outer",), min_length=1, description="boundaries that carry glued grains")
+    boundaries: tuple[str, ...] = Field(("outer",), min_length=1, description="boundaries that meet grains")
     velocity: Literal["shape", "mean"] = Field(
         "shape", description="velocity of a glued grain: interpolated, or the facet's mean (G)"
     )
@@ -33,7 +39,7 @@ class Interface(Table):
     )
 
     def facet_lengths(self, shape: Shape) -> tuple[float, ...]:
-        """Return the lengths of all facets that carry glued grains [m]."""
+        """Return the lengths of all facets that meet grains [m]."""
         return sum((shape.facet_lengths(name) for name in self.boundaries), ())
 
     def grains_per_facet(self, shape: Shape) -> int:
@@ -64,7 +70,7 @@ class Row(Table):
 
 
 class RowUnder(Table):
-    """A row of fixed grains, one exactly below each glued grain of a boundary, touching it."""
+    """A row of fixed grains, one exactly below each place of a glued grain of a boundary, touching it or the facet."""
 
     beside: ClassVar[str] = " together with under"
 

@@ -17,10 +17,10 @@ RESERVED = (GRAINS, STRUCTURE, WALLS, *SIDES)
 
 def materials(scene: Scene) -> tuple[str, ...]:
     """Names of the materials, the free grains first; a row without a name is of theirs."""
-    glued = (STRUCTURE,) if scene.interface is not None else ()
+    structure = (STRUCTURE,) if scene.interface is not None else ()
     walls = scene.box.walls if scene.box is not None else ()
     rows = dict.fromkeys(row.name for row in scene.rows if row.name is not None)
-    return (GRAINS, *glued, *walls, *rows)
+    return (GRAINS, *structure, *walls, *rows)
 
 
 def speakable(scene: Scene) -> tuple[str, ...]:
@@ -30,7 +30,7 @@ def speakable(scene: Scene) -> tuple[str, ...]:
 
 
 def meet(first: str, second: str) -> bool:
-    """Whether two materials can touch: walls meet free grains alone, glued grains do not meet each other."""
+    """Whether two materials can touch: walls meet free grains alone, the structure does not meet itself."""
     if _is_wall(first) or _is_wall(second):
         return {first, second} - {WALLS, *SIDES} == {GRAINS}
     return (first, second) != (STRUCTURE, STRUCTURE)

@@ -31,7 +31,7 @@ class Scene(Table):
     contact: Contact | None = Field(None, description="contact law")
     damping: Damping | None = Field(None, description="global damping of the grains")
     structure: Structure | None = Field(None, description="structure")
-    interface: Interface | None = Field(None, description="glued grains")
+    interface: Interface | None = Field(None, description="glued grains or facets, where grains meet the structure")
     rows: tuple[AnyRow, ...] = Field((), description="rows of fixed grains")
     output: Output = Field(default_factory=Output, description="what is written")
     bed: Scene | None = Field(

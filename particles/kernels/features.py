@@ -124,8 +124,8 @@ def foot_on_node(facets, a, c, b, x, y):
 
 @kernel
 def touching_features(x, y, radius, facets):
-    """Touching grains and features as they stand: (n, 5) place of the grain, charge, overlap, normal into the body."""
-    found = np.empty((facets.grain.shape[0], 5))
+    """Touching grains and features: (n, 7) place of the grain, charge, overlap, normal into the body, its velocity."""
+    found = np.empty((facets.grain.shape[0], 7))
     count = 0
     for k in range(facets.grain.shape[0]):
         i = facets.grain[k]
@@ -135,6 +135,7 @@ def touching_features(x, y, radius, facets):
             if radius[i] > foot.distance > -INSIDE * radius[i]:
                 found[count, 0], found[count, 1], found[count, 2] = i, charge, radius[i] - foot.distance
                 found[count, 3], found[count, 4] = foot.nx, foot.ny
+                found[count, 5], found[count, 6] = foot.vx, foot.vy
                 count += 1
     return found[:count]
 

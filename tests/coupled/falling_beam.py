@@ -67,7 +67,7 @@ def coupled(way: Way, window: float, *, along: int, element: str) -> Fall:
         energies = body.energies()
         state = (body.momentum()[1] / MASS / SPEED, energies.kinetic / FALL, energies.strain / FALL)
         seen.append((body.boundary_displacement[below, 1], *state))
-    assert not model.glued_force.any()  # it has left
+    assert not model.contact_force.any()  # it has left
     return Fall(*(np.array(column) for column in zip(*seen)))
 
 

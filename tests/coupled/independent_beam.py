@@ -64,6 +64,7 @@ class IndependentBeam(IndependentBody):
         between: float,
         friction: float = np.inf,
         may_pull: bool = False,
+        below_facets: float | None = None,
     ) -> Rest:
         """Equilibrium on springs at abscissae `springs`; the active set is found by iteration.
 
@@ -74,26 +75,36 @@ class IndependentBeam(IndependentBody):
         proportion this is ``-x (between/delta) ln(1 - delta/between)``. Sideways each pair so has
         the stiffness ``k_t (1 + delta/(2 between) + ...) - F_n/(between - delta)``. At Coulomb's
         limit the tangential spring is replaced by its constant force.
+
+        Discs of the radius `below_facets` [m] have no such line: `between` is infinite, the normal force leans
+        with the facet's own slope, and stays where it is when the facet moves along.
         """
         across, along_x = self._at_springs(springs, 1), self._at_springs(springs, 0)
         closed, slips = np.ones(len(springs), bool), np.zeros(len(springs), bool)
-        push, slide = np.zeros(len(springs)), np.zeros(len(springs))
+        push, slide, climb, lean = np.zeros((4, len(springs)))
         for _ in range(100):
             delta = push / normal
             stretch = 1 + delta / (2 * between) + (delta / between) ** 2 / 3
             sideways = closed * (~slips * tangential * stretch - push / (between - delta))
-            held = slips * closed * -friction * push * np.sign(slide)
+            held = closed * np.where(slips, -friction * push * np.sign(slide), -tangential * climb)
             system = self.stiffness + across.T @ diags(closed * normal) @ across
             system = system + along_x.T @ diags(sideways) @ along_x
+            if below_facets:
+                slope = self._slope_at(springs - slide - below_facets * lean)  # the foot on the material
+                turned = along_x.T @ diags(push) @ slope
+                system = system + turned + turned.T
             moved = splu(system.tocsc()).solve(load + along_x.T @ held)
             down, slide = -(across @ moved), along_x @ moved
+            if below_facets:
+                lean = slope @ moved
+                climb = -0.5 * lean * down  # of the way along a facet that turns while it goes down
             old = (push, closed, slips)
             push = closed * normal * down
             closed = np.full(len(springs), True) if may_pull else down > 0
             slips = np.abs(tangential * stretch * slide) > friction * np.maximum(push, 0)
             unchanged = (old[1] == closed).all() and (old[2] == slips).all()
             if unchanged and np.abs(push - old[0]).max() <= 1e-12 * np.abs(push).max():
-                return Rest(moved, push, held - sideways * slide, slips & closed)
+                return Rest(moved, push, held - sideways * slide - push * lean, slips & closed)
         raise AssertionError("the set of closed springs does not settle")
 
     def facet_of(self, abscissae: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -101,6 +112,15 @@ class IndependentBeam(IndependentBody):
         place = abscissae * self.along / self.length
         node = np.minimum(np.floor(place + 1e-9).astype(int), self.along - 1)
         return node, node + 1, place - node
+
+    def _slope_at(self, springs: np.ndarray) -> csr_matrix:
+        """Slope of the facet above each spring from all unknowns; half that of both where a node is there."""
+        slopes = []
+        for beside in (-1e-9, 1e-9):
+            first, second, _ = self.facet_of(np.maximum(springs + beside, 0.0))
+            none = np.zeros(len(springs))
+            slopes.append((self.between(second, first, none) - self.between(first, second, none))[1::2])
+        return (slopes[0] + slopes[1]) * (self.along / self.length / 2)
 
     def _at_springs(self, springs: np.ndarray, component: int) -> csr_matrix:
         """Displacement component of the lower face at `springs` from all unknowns, linear in a facet."""

@@ -48,38 +48,53 @@ class OnGluedDiscs:
 
 
 class OnFacets:
-    """Each disc meets the nearest point of the chain of nodes `chain`, whose solid is on its left."""
+    """Each disc meets the chain of nodes `chain`, whose solid is on its left, wherever its distance has an extremum.
+
+    Feet on facets and on corners that point at the disc are minima and push; nodes of notches between two feet are
+    maxima and pull as much. What is left is the push of the nearest point but in notches that a disc covers, where
+    that would jump from one facet to the other.
+    """
 
     def __init__(self, body: IndependentBody, discs: Discs, chain: np.ndarray) -> None:
         self.body, self.discs, self.chain = body, discs, chain
-        places = body.points[chain]
-        middle = (places[1:] + places[:-1]) / 2
-        apart = np.linalg.norm(discs.centres[:, None] - middle, axis=2)
-        self.candidates = np.argsort(apart, axis=1)[:, :3]
 
     def __call__(self, time: float, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Nodal forces, and the normal force of each disc."""
-        discs, count = self.discs, len(self.candidates)
-        places = (self.body.points + u.reshape(-1, 2))[self.chain]
-        centres = discs.centres + time * discs.velocity
-        begin, end = places[self.candidates], places[self.candidates + 1]
-        along = end - begin
-        share = np.sum((centres[:, None] - begin) * along, axis=2) / np.sum(along**2, axis=2)
-        share = np.clip(share, 0.0, 1.0)
-        arms = begin + share[:, :, None] * along - centres[:, None]
-        best = np.argmin(np.sum(arms**2, axis=2), axis=1)
-        rows = np.arange(count)
-        facet, share, arm = self.candidates[rows, best], share[rows, best], arms[rows, best]
-        distance = np.hypot(*arm.T)
-        normal = arm / distance[:, None]
-        first, second = self.chain[facet], self.chain[facet + 1]
-        speeds = v.reshape(-1, 2)
-        speed = (1 - share)[:, None] * speeds[first] + share[:, None] * speeds[second]
-        push = law(discs, discs.radius - distance, -np.sum((speed - discs.velocity) * normal, axis=1))
-        nodal = np.zeros((len(self.body.points), 2))
-        np.add.at(nodal, first, ((1 - share) * push)[:, None] * normal)
-        np.add.at(nodal, second, (share * push)[:, None] * normal)
-        return nodal.ravel(), push
+        discs, chain, speeds = self.discs, self.chain, v.reshape(-1, 2)
+        places, velocity = (self.body.points + u.reshape(-1, 2))[chain], speeds[chain]
+        centres = (discs.centres + time * discs.velocity)[:, None]
+        own = np.broadcast_to(discs.velocity, discs.centres.shape)[:, None]
+        along = np.diff(places, axis=0)
+        after_start = np.sum((centres - places[:-1]) * along, axis=2) >= 0.0  # (discs, facets)
+        after_end = np.sum((centres - places[1:]) * along, axis=2) >= 0.0
+        size = np.sum(along**2, axis=1)
+        share = np.sum((centres - places[:-1]) * along, axis=2) / size
+        nodal, pushes = np.zeros((len(self.body.points), 2)), np.zeros(len(centres))
+
+        def add(
+            sign: np.ndarray, foot: np.ndarray, speed: np.ndarray, ends: list[tuple[np.ndarray, np.ndarray]]
+        ) -> None:
+            """Forces of the features with a sign, shared by nodes `ends` (node of each feature, share of each pair)."""
+            arm = foot - centres
+            distance = np.hypot(*np.moveaxis(arm, 2, 0))
+            near = (sign != 0) & (distance < discs.radius)
+            normal = arm / np.where(near, distance, 1.0)[:, :, None]
+            closing = -np.sum((speed - own) * normal, axis=2)
+            push = near * sign * law(discs, discs.radius - distance, closing)
+            pushes[:] += push.sum(axis=1)
+            for node, part in ends:
+                np.add.at(nodal, node, ((part * push)[:, :, None] * normal).sum(axis=0))
+
+        foot = places[:-1] + share[:, :, None] * along
+        speed = velocity[:-1] + share[:, :, None] * np.diff(velocity, axis=0)
+        one = np.ones_like(share)
+        add(after_start.astype(int) - after_end, foot, speed, [(chain[:-1], one - share), (chain[1:], share)])
+        left, right = np.pad(after_end, ((0, 0), (1, 0)), constant_values=True), np.pad(after_start, ((0, 0), (0, 1)))
+        if chain[0] == chain[-1]:  # closed: the last node is the first, and has been counted
+            left[:, 0], right[:, -1] = left[:, -1], left[:, -1]
+        here = np.broadcast_to(places, (len(centres), *places.shape))
+        add(left.astype(int) - right, here, velocity, [(chain, np.ones(left.shape))])
+        return nodal.ravel(), pushes
 
 
 def law(discs: Discs, overlap: np.ndarray, closing: np.ndarray) -> np.ndarray:

@@ -54,7 +54,7 @@ def deflection(interface: str, speed: float, window: float) -> tuple[np.ndarray,
         )
         model.advance(round(arrivals[ALONG // 2] / window))
         faces.append(face(model, 0.0))
-        assert (model.glued_force[:, 1] > 0).all()
+        assert (model.contact_force[:, 1] > 0).all()
     return SPACING * np.arange(1, ALONG + 2) - speed * model.time, faces[1] - faces[0]
 
 

@@ -70,7 +70,7 @@ def test_elastic_beam_is_stable_up_to_the_limit_of_its_consistent_mass(dashpot: 
             "interface.largest_stiffness_ratio=10.0",
         )
         model.advance(1500)
-        unevenness.append(np.ptp(model.glued_force[:, 1]))
+        unevenness.append(np.ptp(model.contact_force[:, 1]))
     # At rest the forces range over 46 N of 1000 N; beyond the limit springs open.
     assert unevenness[0] < 60.0 and unevenness[1] > 1000.0
 
@@ -116,7 +116,7 @@ def test_substeps_do_not_change_the_answer_at_rest() -> None:
     for substeps in (1, 2, 5):
         model = elastic_beam(f"interface.substeps={substeps}", "interface.largest_stiffness_ratio=3.0")
         model.advance(round(0.45 / model.window))
-        forces.append(model.glued_force)
+        forces.append(model.contact_force)
     # The bounce has decayed by exp(-70 * 0.25) = 3e-8.
     for force in forces[1:]:
         assert np.abs(force - forces[0]).max() < 1e-7 * np.abs(forces[0]).max()
@@ -141,7 +141,7 @@ def test_lagged_and_predicted_exchange_agree_at_small_steps() -> None:
 
 def test_a_structure_that_starts_in_contact_starts_accelerated() -> None:
     """One disc that overlaps the beam by 10 um at t = 0 pushes it down at once, with F = k delta."""
-    radius = discs_on_free_beam([[0.0, 0.5, 0.0, 0.0, 0.0]], step=1e-6).model.glued.radius
+    radius = discs_on_free_beam([[0.0, 0.5, 0.0, 0.0, 0.0]], step=1e-6).model.interface.radius
     built = discs_on_free_beam([[0.0, 0.01 + radius - 1e-5, 0.0, 0.0, 0.0]], step=1e-6)
     assert built.model.reaction[1] == pytest.approx(-1e6 * 1e-5, rel=1e-9)
     built.model.advance(1)
@@ -170,7 +170,7 @@ def test_limit_of_a_dissipative_scheme_is_safe_and_that_of_newmark_is_not() -> N
             *soft,
         )
         model.advance(1500)
-        unevenness.append(np.ptp(model.glued_force[:, 1]))
+        unevenness.append(np.ptp(model.contact_force[:, 1]))
     # At rest the forces range over 103 N of 1000 N; beyond the limit springs open.
     assert unevenness[0] < 150.0 and unevenness[1] > 1000.0
 

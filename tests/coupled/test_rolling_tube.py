@@ -23,7 +23,7 @@ def test_corotational_tube_rolls_as_newton_says() -> None:
     model, error = rolled("corotational")
     load = load_scene("rolling_tube").structure.loads[0].acceleration
     # Thick ring: I = m (R^2 + r^2)/2, rolling on the outer radius of its glued grains.
-    outer, inner, on = 0.05, 0.04, 0.05 + model.glued.radius
+    outer, inner, on = 0.05, 0.04, 0.05 + model.interface.radius
     speeding_up = load[0] / (1 + (outer**2 + inner**2) / 2 / on**2)
     turn = -speeding_up * SECONDS**2 / 2 / on
     assert turn < -1.4

@@ -119,7 +119,7 @@ BAD: dict[str, Case] = {
         TUBE,
         {"structure": GONE},
         "structure",
-        ("missing", "glued grains need a structure"),
+        ("missing", "an interface needs a structure"),
     ),
     "structure without interface": (
         TUBE,
@@ -281,6 +281,25 @@ BAD: dict[str, Case] = {
         "interface.boundaries.0",
         ("outer",),
     ),
+    "mean velocity of facets": (
+        TUBE,
+        {"interface": {"kind": "facets", "velocity": "mean"}},
+        "interface.velocity",
+        ("glued grains", "remove it"),
+    ),
+    "facets inside": (
+        TUBE,
+        {"interface": {"kind": "facets", "boundaries": ["inner"]}},
+        "interface.boundaries.0",
+        ("outer",),
+    ),
+    "row under facets without a number": (
+        BEAM_ON_ROW,
+        {"interface": {"kind": "facets", "boundaries": ["bottom"]}},
+        "interface.per_facet",
+        ("missing", 'row under "bottom"'),
+    ),
+    "unknown interface": (TUBE, {"interface.kind": "mortar"}, "interface.kind", ("'facets'",)),
     "no substep": (TUBE, {"interface.substeps": 0}, "interface.substeps", ("at least 1",)),
     "row under a bare boundary": (
         BEAM_ON_ROW,

@@ -26,7 +26,7 @@ def test_ring_pressed_slowly_closes_as_a_thin_ring_under_four_forces() -> None:
     forces, closing = [], []
     for _ in range(26):  # two of the slowest oscillation, of which 3 % is left
         model.advance(round(2e-4 / window))
-        forces.append(np.hypot(*model.glued_force.T).sum() / 4)
+        forces.append(np.hypot(*model.contact_force.T).sum() / 4)
         closing.append(SPEED * model.time * np.cos(a))
     bending, middle = YOUNG / (1 - POISSON**2) * (OUTER - INNER) ** 3 / 12, (OUTER + INNER) / 2
     series = np.sum((1 + np.cos(2 * n * a)) / (n**2 - 1.0) ** 2)

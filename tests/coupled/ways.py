@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-INTERFACES = ("glued",)
+INTERFACES = ("glued", "facets")
 EXCHANGES: dict[str, dict[str, Any]] = {
     "predicted": {},
     "substeps": {"substeps": 4},
@@ -33,11 +33,13 @@ class Way:
     def table(self, *, boundary: str, per_facet: int, radius: float) -> dict[str, Any]:
         """The table [interface] on one boundary; number and radius [m] are those of glued grains."""
         own = {"boundaries": [boundary], "largest_stiffness_ratio": 100.0} | EXCHANGES[self.exchange]
+        if self.interface == "facets":
+            return own | {"kind": "facets"}
         return own | {"per_facet": per_facet, "diameter": 2 * radius}
 
     def standoff(self, radius: float) -> float:
         """How far the surface that meets grains stands off the boundary [m]."""
-        return radius
+        return radius if self.interface == "glued" else 0.0
 
 
 WAYS = [Way(interface, exchange) for interface in INTERFACES for exchange in EXCHANGES]

@@ -1,4 +1,4 @@
-"""Rules of the glued grains and of the rows of fixed grains."""
+"""Rules of the interface and of the rows of fixed grains."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def check_interface(scene: Scene) -> None:
-    """Check the glued grains against the shape that carries them."""
+    """Check the interface against the shape that carries it."""
     interface, structure = scene.interface, scene.structure
     if interface is None or structure is None:
         return
@@ -21,12 +21,19 @@ def check_interface(scene: Scene) -> None:
         raise refusal(
             "interface",
             {},
-            "leaves its glued grains with nothing to touch, as walls meet free grains alone; add [grains] or [[rows]]",
+            "has nothing to touch, as walls meet free grains alone; add [grains] or [[rows]]",
         )
     shape = structure.shape
     _check_boundaries(interface, shape)
-    _check_number(interface, shape)
-    if interface.diameter is not None:
+    if interface.kind == "facets" and interface.velocity == "mean":
+        raise refusal(
+            "interface.velocity",
+            "mean",
+            'is that of glued grains, facets move with both nodes; remove it or say kind = "glued"',
+        )
+    if interface.kind == "glued" or interface.per_facet is not None or interface.count is not None:
+        _check_number(interface, shape)
+    if interface.kind == "glued" and interface.diameter is not None:
         spacing = interface.smallest_spacing(shape)
         # one part in 1e9: a diameter of exactly the spacing may be written with rounding
         if interface.diameter > spacing * (1 + 1e-9):
@@ -90,8 +97,12 @@ def check_rows(scene: Scene) -> None:
 def _check_under(scene: Scene, under: str, key: str) -> None:
     interface, structure = scene.interface, scene.structure
     if interface is None or structure is None:
-        raise refusal(key, under, "needs glued grains above; add [structure] and [interface] or give start")
+        raise refusal(key, under, "needs a structure above; add [structure] and [interface] or give start")
+    if interface.per_facet is None and interface.count is None:
+        raise missing(
+            "interface.per_facet", f'a row under "{under}" takes its number from it; give it, or start and end'
+        )
     covered = under in interface.boundaries or "outer" in interface.boundaries
     if under not in structure.shape.glueable or not covered:
         allowed = structure.shape.glueable if covered else interface.boundaries
-        raise refusal(key, under, f"carries no glued grains; {nearest(under, allowed)}")
+        raise refusal(key, under, f"meets no grains; {nearest(under, allowed)}")

@@ -36,7 +36,7 @@ def _check_pairs(scene: Scene, contact: Contact) -> None:
             raise refusal(
                 key,
                 list(pair.between),
-                'never meet: walls touch "grains" alone, and glued grains not each other; remove this pair',
+                'never meet: walls touch "grains" alone, and a structure not itself; remove this pair',
             )
         met = tuple(sorted(pair.between))
         if met in seen:

@@ -140,6 +140,6 @@ def _check_placement(scene: Scene, structure: Structure) -> None:
 def _glued_radius(scene: Scene, structure: Structure) -> float:
     """Return the radius of a glued grain where it is given [m]."""
     interface = scene.interface
-    if interface is None or interface.diameter is None:
+    if interface is None or interface.kind != "glued" or interface.diameter is None:
         return 0.0
     return interface.diameter / 2

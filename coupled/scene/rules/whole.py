@@ -17,14 +17,14 @@ def check_whole(scene: Scene) -> None:
     if scene.interface is not None and scene.structure is None:
         raise missing(
             "structure",
-            "glued grains need a structure to sit on; add [structure] or remove [interface]",
+            "an interface needs a structure; add [structure] or remove [interface]",
         )
     if scene.structure is not None and scene.interface is None:
         for key, there in (("grains", scene.grains is not None), ("rows", bool(scene.rows))):
             if there:
                 raise missing(
                     "interface",
-                    f"a structure meets {key} only through glued grains; add [interface] or remove [{key}]",
+                    f"a structure meets {key} only through an interface; add [interface] or remove [{key}]",
                 )
     if scene.damping is not None and scene.grains is None:
         raise refusal("damping", {}, "acts on free grains alone; add [grains] or remove it")
