@@ -9,8 +9,8 @@ import numpy as np
 import structure as fem
 from coupled.scene import loads as tables
 from meshes import StructureMesh
-from structure.loads import Load
-from structure.schedules import Schedule
+from structure.loads.load import Load
+from structure.loads.schedules import Schedule
 
 FEWEST_STEPS = 20  # per period of a sine: Newmark then lengthens a period by 1 %
 

@@ -3,16 +3,16 @@
 from structure.boundary import agreed_force, withhold_force
 from structure.elastic import ElasticStructure
 from structure.errors import StructureError
-from structure.free_rigid import FreeRigid
-from structure.loads import BodyForce, BoundaryLoad, PointLoad, Pressure
+from structure.loads.load import BodyForce, BoundaryLoad, PointLoad, Pressure
+from structure.loads.schedules import Constant, Ramp, Sine, Table
 from structure.material import PlaneStrain, Rayleigh
-from structure.options import set_solver_options, solver_options, unused_solver_options
-from structure.prescribed import PrescribedRigid
 from structure.protocol import Structure
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
-from structure.schedules import Constant, Ramp, Sine, Table
+from structure.rigid.free import FreeRigid
+from structure.rigid.prescribed import PrescribedRigid
 from structure.schemes import GeneralizedAlpha, HilberHughesTaylor, Newmark, Scheme
-from structure.validity import departures
+from structure.solvers.options import set_solver_options, solver_options, unused_solver_options
+from structure.theories.validity import departures
 
 __all__ = [
     "BodyForce",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from meshes import StructureMesh
 from structure import compat, forms
 from structure.nodes import NodeMap
-from structure.solver import know_rigid_motions
+from structure.solvers.solver import know_rigid_motions
 
 
 class DiscreteBody:

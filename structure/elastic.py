@@ -14,15 +14,15 @@ from structure.boundary import agreed_force, boundary_exchange
 from structure.discrete import DiscreteBody
 from structure.elements import ElementName
 from structure.errors import StepError, StructureError
-from structure.follower_limit import require_followers_fit
-from structure.load_vectors import LoadVectors
-from structure.loads import Load
+from structure.loads.load import Load
+from structure.loads.vectors import LoadVectors
 from structure.material import PlaneStrain, Rayleigh
 from structure.results import StructureEnergies, StructureFields, StructurePeaks, cell_kind
 from structure.schemes import Newmark, Scheme
-from structure.solver import factorise
-from structure.theories import theory_of
-from structure.theory import TheoryName
+from structure.solvers.solver import factorise
+from structure.theories.choice import theory_of
+from structure.theories.follower_limit import require_followers_fit
+from structure.theories.theory import TheoryName
 
 STATE_FIELDS = ("displacement", "velocity", "acceleration")
 

@@ -10,7 +10,7 @@ from slepc4py import SLEPc
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
 from structure.material import PlaneStrain
-from structure.solver import configure
+from structure.solvers.solver import configure
 
 RIGID_MODES = 3
 

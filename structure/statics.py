@@ -8,10 +8,10 @@ from petsc4py import PETSc
 
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
-from structure.load_vectors import LoadVectors
+from structure.loads.vectors import LoadVectors
 from structure.material import PlaneStrain
 from structure.modes import rigid_motions, stiffness_scale
-from structure.solver import factorise_for_few
+from structure.solvers.solver import factorise_for_few
 
 LARGEST_IMBALANCE = 1e-9
 SWEEPS = 100

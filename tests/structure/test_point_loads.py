@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from structure import FreeRigid, PlaneStrain, PointLoad, StructureError
 from structure.discrete import DiscreteBody
-from structure.load_vectors import LoadVectors
-from structure.point_location import shares_at
+from structure.loads.vectors import LoadVectors
+from structure.loads.point_location import shares_at
 
 KINDS = [("quadrilateral", 1), ("triangle", 1), ("quadrilateral", 2), ("triangle", 2)]
 

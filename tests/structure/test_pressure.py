@@ -9,8 +9,8 @@ from held import moved
 from scipy.integrate import solve_ivp
 from structure import ElasticStructure, FreeRigid, PlaneStrain, Pressure, Ramp, StructureError
 from structure.discrete import DiscreteBody
-from structure.load_vectors import LoadVectors
-from structure.pressure import PressedBoundary
+from structure.loads.vectors import LoadVectors
+from structure.loads.pressure import PressedBoundary
 
 KINDS = [("quadrilateral", 1), ("triangle", 1), ("quadrilateral", 2), ("triangle", 2)]
 

@@ -11,7 +11,7 @@ import pytest
 from petsc4py import PETSc
 
 import meshes
-from structure import solver
+from structure.solvers import solver
 from structure import (
     BoundaryLoad,
     ElasticStructure,

@@ -2,8 +2,8 @@
 
 import numpy as np
 from scipy.linalg import logm, polar, svdvals
-from structure import gradients
-from structure.mixing import Mixing
+from structure.theories import gradients
+from structure.theories.mixing import Mixing
 from structure.stress import turned
 
 

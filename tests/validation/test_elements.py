@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 from structure import BoundaryLoad, ElasticStructure, PlaneStrain, PointLoad
-from structure.loads import Load
+from structure.loads.load import Load
 
 PAGE = Path(__file__).parents[2] / "docs" / "validation" / "elements.md"
 YOUNG, DENSITY = 70e9, 2700.0

@@ -15,11 +15,11 @@ from structure import checks
 from structure.boundary import agreed_force
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
-from structure.load_vectors import LoadVectors
-from structure.loads import Load
+from structure.loads.load import Load
+from structure.loads.vectors import LoadVectors
+from structure.loads.wrench import FollowingLoads, Wrench
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
-from structure.rigid_motion import NO_STRESS, RigidMotion, rigid_fields
-from structure.wrench import FollowingLoads, Wrench
+from structure.rigid.motion import NO_STRESS, RigidMotion, rigid_fields
 
 SWEEPS = 100
 

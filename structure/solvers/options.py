@@ -8,7 +8,7 @@ import shlex
 from petsc4py import PETSc
 
 from structure.errors import StructureError
-from structure.solver import PREFIX
+from structure.solvers.solver import PREFIX
 
 EXAMPLE = f'"-{PREFIX}ksp_type cg -{PREFIX}pc_type gamg"'
 

@@ -8,13 +8,13 @@ from petsc4py import PETSc
 
 from structure.discrete import DiscreteBody
 from structure.elements import ElementName, element_of
-from structure.load_vectors import LoadVectors
+from structure.loads.vectors import LoadVectors
 from structure.material import PlaneStrain, Rayleigh
-from structure.newmark import NewmarkStepper
 from structure.results import StructurePeaks
 from structure.schemes import Scheme
 from structure.statics import balanced_displacement
 from structure.stress import StressProbe
+from structure.theories.newmark import NewmarkStepper
 
 
 class LinearTheory:

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from structure import forms
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
-from structure.facets import boundary_tags
-from structure.loads import BodyForce, BoundaryLoad, Load, PointLoad, Pressure
-from structure.point_location import shares_at
-from structure.pressure import PressedBoundary
-from structure.schedules import Schedule
+from structure.loads.facets import boundary_tags
+from structure.loads.load import BodyForce, BoundaryLoad, Load, PointLoad, Pressure
+from structure.loads.point_location import shares_at
+from structure.loads.pressure import PressedBoundary
+from structure.loads.schedules import Schedule
 
 
 class LoadVectors:

@@ -9,15 +9,15 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from structure import compat
-from structure.corotational_step import CorotationalStepper
 from structure.discrete import DiscreteBody
 from structure.elements import ElementName, element_of
 from structure.errors import StructureError
-from structure.gradients import GradientProbe, rotation
-from structure.load_vectors import LoadVectors
+from structure.loads.vectors import LoadVectors
 from structure.material import PlaneStrain, Rayleigh
 from structure.results import StructurePeaks
 from structure.stress import StressProbe
+from structure.theories.corotational_step import CorotationalStepper
+from structure.theories.gradients import GradientProbe, rotation
 
 
 class CorotationalTheory:

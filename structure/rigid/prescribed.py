@@ -11,7 +11,7 @@ from structure.boundary import agreed_force
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
-from structure.rigid_motion import NO_STRESS, RigidMotion, rigid_fields
+from structure.rigid.motion import NO_STRESS, RigidMotion, rigid_fields
 
 
 class PrescribedRigid:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from structure.theory import TheoryName
+from structure.theories.theory import TheoryName
 
 
 class Limit(NamedTuple):

@@ -8,8 +8,8 @@ from scipy.sparse import csr_matrix
 
 from structure.boundary import boundary_exchange
 from structure.discrete import DiscreteBody
-from structure.facets import boundary_facets, on_facet
-from structure.loads import Pressure
+from structure.loads.facets import boundary_facets, on_facet
+from structure.loads.load import Pressure
 
 
 class PressedBoundary:

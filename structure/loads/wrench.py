@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from structure.pressure import PressedBoundary
+from structure.loads.pressure import PressedBoundary
 
 
 @dataclass(frozen=True, kw_only=True)

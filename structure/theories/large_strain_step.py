@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from structure import compat
-from structure.conserving import ConservingStepper
 from structure.discrete import DiscreteBody
-from structure.frame import Pose
 from structure.material import PlaneStrain, Rayleigh
 from structure.nodes import fill
-from structure.solver import configure
+from structure.solvers.solver import configure
+from structure.theories.conserving import ConservingStepper
+from structure.theories.frame import Pose
 
 STEPS = 30
 NEAR = 1e-8  # a Newton correction so small beside the solution leaves an error of its square

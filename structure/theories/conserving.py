@@ -12,9 +12,9 @@ from petsc4py import PETSc
 
 from structure.discrete import DiscreteBody
 from structure.errors import StepError
-from structure.frame import MeanFrame, Pose, unwrapped
 from structure.material import Rayleigh
-from structure.solver import Solve, factorise
+from structure.solvers.solver import Solve, factorise
+from structure.theories.frame import MeanFrame, Pose, unwrapped
 
 LARGEST_TURN = math.pi / 2  # of the body within a step
 

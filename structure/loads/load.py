@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from structure import checks
-from structure.schedules import Constant, Schedule
+from structure.loads.schedules import Constant, Schedule
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from structure.load_vectors import LoadVectors
+from structure.loads.vectors import LoadVectors
 from structure.results import StructurePeaks
 
 TheoryName = Literal["linear", "corotational", "large_strain"]

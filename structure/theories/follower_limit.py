@@ -9,9 +9,9 @@ import numpy as np
 
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
-from structure.pressure import PressedBoundary
-from structure.solver import factorise
-from structure.theory import TheoryName
+from structure.loads.pressure import PressedBoundary
+from structure.solvers.solver import factorise
+from structure.theories.theory import TheoryName
 
 SWEEPS = 40
 ALLOWED = 0.9  # of the limit; the largest eigenvalue is found to about 2 %, from below

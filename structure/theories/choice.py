@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import get_args
 
-from structure.corotational import CorotationalTheory
 from structure.discrete import DiscreteBody
 from structure.elements import ElementName
 from structure.errors import StructureError
-from structure.large_strain import LargeStrainTheory
-from structure.linear import LinearTheory
 from structure.material import PlaneStrain, Rayleigh
 from structure.schemes import Newmark, Scheme
-from structure.theory import Theory, TheoryName
+from structure.theories.corotational import CorotationalTheory
+from structure.theories.large_strain import LargeStrainTheory
+from structure.theories.linear import LinearTheory
+from structure.theories.theory import Theory, TheoryName
 
 
 def theory_of(

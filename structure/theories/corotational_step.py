@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from structure.conserving import ConservingStepper
 from structure.discrete import DiscreteBody
-from structure.frame import Complex, Pose, as_complex, wrapped
 from structure.material import Rayleigh
-from structure.mixing import Mixing
-from structure.solver import factorise
+from structure.solvers.solver import factorise
+from structure.theories.conserving import ConservingStepper
+from structure.theories.frame import Complex, Pose, as_complex, wrapped
+from structure.theories.mixing import Mixing
 
 SWEEPS = 50
 SLOW, DEPTH = 0.05, 2  # corrections that shrink more slowly are mixed with the last ones

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from meshes import StructureMesh
 from meshes.kinds import KINDS, Kind, shapes_at
 from structure.errors import StructureError
-from structure.facets import on_facet
+from structure.loads.facets import on_facet
 
 INSIDE = 1e-9  # of a cell: a point that far outside in reference coordinates is on its side
 SWEEPS = 50

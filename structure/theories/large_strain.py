@@ -7,16 +7,16 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from structure import compat
-from structure.corotational import no_statics
 from structure.discrete import DiscreteBody
 from structure.elements import ElementName, StandardElement
 from structure.errors import StructureError
-from structure.gradients import GradientProbe, green_lagrange, least_stretch, logarithmic
-from structure.large_strain_step import LargeStrainStepper
-from structure.load_vectors import LoadVectors
+from structure.loads.vectors import LoadVectors
 from structure.material import PlaneStrain, Rayleigh, largest_principal_strain, von_mises
 from structure.results import StructurePeaks
 from structure.stress import by_name
+from structure.theories.corotational import no_statics
+from structure.theories.gradients import GradientProbe, green_lagrange, least_stretch, logarithmic
+from structure.theories.large_strain_step import LargeStrainStepper
 
 
 class LargeStrainTheory:

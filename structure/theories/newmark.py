@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from structure.schemes import Scheme
-from structure.solver import factorise
+from structure.solvers.solver import factorise
 
 
 class NewmarkStepper:

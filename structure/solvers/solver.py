@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from structure.errors import StructureError
-from structure.memory import available_memory
+from structure.solvers.memory import available_memory
 
 Solve = Callable[[PETSc.Vec, PETSc.Vec], None]
 

@@ -1,0 +1,1 @@
+"""Bodies without strain: along a prescribed path, or free."""

@@ -1,0 +1,1 @@
+"""Linear solvers: chosen by size, overridable by PETSc options."""
