@@ -50,6 +50,7 @@ FURTHER = {
     "rebuild_share_shaken": "%",
     "first_start_seconds": "s",
     "peak_memory_1e6_discs": "MiB",
+    "facets_over_glued": "1",
     "ratio_liggghts": "1",
     "ratio_lammps_granular_2_ranks": "1",
     "ratio_lammps_hooke_history_2_ranks": "1",

@@ -8,6 +8,7 @@ of the file as it is.
 import argparse
 
 import figure
+import interfaces
 import measures
 import peers
 import processes
@@ -29,6 +30,7 @@ def main() -> None:
         "ratio": lambda: measures.size_ratio(rates),
         "start": processes.starts,
         "few": measures.few_discs,
+        "interfaces": interfaces.interfaces,
         "structure": lambda: structure_steps.steps(steps),
         MILLION: lambda: structure_steps.million(steps),
     }
