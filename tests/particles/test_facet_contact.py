@@ -7,6 +7,7 @@ from discs import FLOOR, balance, by_number, full_law, normal_only, resting_disc
 from polylines import closed, ground, held
 
 from particles import Facets, Grains, ParticleSystem, neighbours, sharp_limit
+from particles.spots import deepest_touch
 
 EPS = np.finfo(float).eps
 STEPS = 500
@@ -284,3 +285,18 @@ def test_limit_of_the_step_is_that_on_a_wall(place: float, notch: float) -> None
     assert wall.contacts == facets.contacts == 1
     # arm r - delta instead of r - delta/2 in the tangential springs, and a normal that leans by the notch
     assert facets.step == pytest.approx(wall.step, rel=MASS * G / K_N / RADIUS + notch)
+
+
+def test_message_of_a_contact_knows_facets() -> None:
+    """The deepest contact of a disc that a rising facet meets, and one that nothing touches."""
+    grains = Grains.discs([[0.01, 0.98 * RADIUS], [0.05, 0.05]], RADIUS, 1000.0, velocity=[[3.0, -0.5], [0.0, 0.0]])
+    system = full_law(grains, k_n=K_N, k_t=K_T, mu=0.5, facets=FLAT, time_step=1e-5)
+    system.facets.set_velocity([1.0, 0.25])
+    system.start()
+    place = int(np.argmin(system.grains.number))
+    touch = deepest_touch(system, place)
+    assert (touch.partner, touch.wall) == (None, None)
+    assert touch.depth == pytest.approx(0.02, rel=1e-12)
+    # half a kick of the spring, less the dashpot's zero, lies between: k delta dt/(2 m) = 0.4 mm/s
+    assert touch.approach == pytest.approx(0.75, abs=1e-3)
+    assert deepest_touch(system, 1 - place) is None
