@@ -27,6 +27,7 @@ WAYS: dict[str, tuple[list[str], int]] = {  # changes of the scene, kills
     "predicted": ([], 10),
     "sub-cycled": (["interface.substeps=2", "structure.density=10000"], 3),  # heavier, for the stiffness ratio
     "lagged": (["interface.exchange=lagged"], 3),
+    "facets": (["interface.kind=facets"], 10),
 }
 
 

@@ -12,7 +12,7 @@ from mpi4py import MPI
 from coupled.build import build
 from coupled.scene import Scene
 
-WAYS = {"glued": {"per_facet": 2}}
+WAYS = {"glued": {"per_facet": 2}, "facets": {"kind": "facets"}}
 TABLES = {
     "title": "a tube is driven into grains that fall",
     "gravity": [0.0, -9.81],
