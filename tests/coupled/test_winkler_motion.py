@@ -21,11 +21,11 @@ def test_beam_on_springs_moves_as_the_independent_one(way: Way, case: str) -> No
 def test_running_load_on_a_long_beam_is_that_of_an_infinite_one(interface: str, share: float) -> None:
     """Euler and Bernoulli on Winkler's foundation; the beam is 20 wave lengths over 2 pi long.
 
-    What the entry of the load leaves has decayed by exp(-4) and more where it is seen, halfway.
+    What the load left when it began has decayed by exp(-6) and exp(-3) where it is seen, halfway.
     """
     ahead, seen = deflection(interface, share * CRITICAL, 1e-5)
     reference = expected(ahead, share * CRITICAL)
     near = np.abs(ahead) < 0.3
     error = np.abs(seen - reference)[near].max() / np.abs(reference).max()
-    # Left out: shear and the inertia of turning, which lower the critical speed; 0.5 % at 0.3 of it, 3.4 % at 0.6.
-    assert error < 0.13 * share**2
+    # Left out: shear and the inertia of turning, which lower the critical speed; 0.3 % at 0.3 of it, 2.6 % at 0.6.
+    assert error < 0.09 * share**2
