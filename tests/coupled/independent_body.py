@@ -108,13 +108,14 @@ def motion(
         time = n * step
         to_u, to_v = u + step * v + step**2 / 4 * a, v + step / 2 * a
         known = outside(time) - damping @ to_v - stiffness @ to_u
-        for _ in range(50):
+        for _ in range(20):
             new = solve(known + force)
             old, (force, pushes) = force, contact(time, to_u + step**2 / 4 * new, to_v + step / 2 * new)
-            if np.abs(force - old).max() <= 1e-10 * max(1.0, np.abs(force).max()):
+            change = np.abs(force - old).max() / max(1.0, np.abs(force).max())
+            if change <= 1e-10:
                 break
-        else:
-            raise AssertionError(f"the contact forces do not settle at t = {time:g} s: take a smaller step")
+        # A disc below a node between two facets may be nearest to either in turn: their slopes differ by 1e-6.
+        assert change <= 1e-5, f"the contact forces do not settle at t = {time:g} s: take a smaller step"
         a = solve(known + force)
         u, v = to_u + step**2 / 4 * a, to_v + step / 2 * a
         if n % every == 0:

@@ -26,7 +26,7 @@ RADII, SHARES, DENSITY, STEP, SUBSTEPS = (5.5e-3, 5e-3, 4.5e-3), (0.25, 0.5, 0.2
 DIAMETER, COUNT, LEFT, WIDTH = 1e-2, 400, 0.15, 0.4  # mean diameter; the bed, between two columns
 LENGTH, HEIGHT, FACET = 0.7, 0.02, 0.02
 BED_FRICTION, LOAD, PLATE_DENSITY, SPEED = 0.8, 2000.0, 2000.0, 0.1
-PRESS, START, SLIDE, SKIP = 0.15, 0.05, 0.8, 0.1  # s: the load comes; the plate takes its speed; slides; not counted
+PRESS, START, SLIDE, SKIP = 0.15, 0.05, 1.0, 0.4  # s: the load comes; the plate takes its speed; slides; not counted
 SEEDS, FRICTIONS, SPACINGS = (1, 2, 3, 4), (0.0, 0.1, 0.3, 0.5), (1.0, 0.5, 0.25, 0.125)
 GAPPED, GAPPED_FRICTIONS = (0.5, 0.25), (0.0, 0.3)  # glued diameters over a spacing of half a grain, and friction
 CONTACT = {
@@ -224,10 +224,9 @@ def write_page(found: Coefficients, picture: str) -> None:
             values = found.get((face, friction))
             cells.append("" if values is None else f"{values.mean():.3f} ({values.min():.3f} to {values.max():.3f})")
         lines.append(f"| {' | '.join(cells)} |")
-    text = PAGE.format(
-        count=COUNT, seeds=len(SEEDS), load=LOAD, speed=SPEED, grains=BED_FRICTION, way=SPEED * (SLIDE - SKIP) / DIAMETER,
-        picture=picture, table="\n".join(lines),
-    )  # fmt: skip
+    numbers = {"count": COUNT, "seeds": len(SEEDS), "load": LOAD, "speed": SPEED, "grains": BED_FRICTION}
+    way = SPEED * (SLIDE - SKIP) / DIAMETER
+    text = PAGE.format(**numbers, way=way, first=SPEED * SKIP / DIAMETER, picture=picture, table="\n".join(lines))
     (FOLDER / "roughness.md").write_text(text)
 
 
@@ -235,12 +234,12 @@ PAGE = """# How rough glued grains are
 
 Written by `make validate`.
 
-A rigid plate slides over a bed of {count} grains (10 mm +- 10 %, friction {grains:g} among them) under a constant load of
-{load:g} N/m at {speed:g} m/s; a guide takes its drag and its moment and lets it rise and sink. The bed lies between two
-columns that end just below the plate. Drag over load is the friction that the plate sees, over a way of {way:.0f} grain
-diameters; mean of {seeds} beds, and the smallest and largest of them. mu is the friction between grains and plate. Glued
-grains touch each other where nothing else is said. The steepest slope is that of one grain of the mean size d that rides
-over two of them.
+A rigid plate slides over a bed of {count} grains (10 mm +- 10 %, friction {grains:g} and rolling friction 0.2 among them)
+under a constant load of {load:g} N/m at {speed:g} m/s; a guide takes its drag and its moment and lets it rise and sink.
+The bed lies between two columns that end just below the plate. Drag over load is the friction that the plate sees,
+over a way of {way:.0f} grain diameters after {first:.0f}; mean of {seeds} beds, and the smallest and largest of them. mu is
+the friction between grains and plate. Glued grains touch each other where nothing else is said. The steepest slope is
+that of one grain of the mean size d that rides over two of them.
 
 ![{picture}]({picture})
 
