@@ -234,12 +234,12 @@ PAGE = """# How rough glued grains are
 
 Written by `make validate`.
 
-A rigid plate slides over a bed of {count} grains (10 mm +- 10 %, friction {grains:g} and rolling friction 0.2 among them)
-under a constant load of {load:g} N/m at {speed:g} m/s; a guide takes its drag and its moment and lets it rise and sink.
-The bed lies between two columns that end just below the plate. Drag over load is the friction that the plate sees,
-over a way of {way:.0f} grain diameters after {first:.0f}; mean of {seeds} beds, and the smallest and largest of them. mu is
-the friction between grains and plate. Glued grains touch each other where nothing else is said. The steepest slope is
-that of one grain of the mean size d that rides over two of them.
+A rigid plate slides over a bed of {count} grains (10 mm +- 10 %, friction {grains:g} and rolling friction 0.2 among
+them) under a constant load of {load:g} N/m at {speed:g} m/s; a guide takes its drag and its moment and lets it rise and
+sink. The bed lies between two columns that end just below the plate. Drag over load is the friction that the plate
+sees, over a way of {way:.0f} grain diameters after {first:.0f}; mean of {seeds} beds, and the smallest and largest of
+them. mu is the friction between grains and plate. Glued grains touch each other where nothing else is said. The
+steepest slope is that of one grain of the mean size d that rides over two of them.
 
 ![{picture}]({picture})
 
