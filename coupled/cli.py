@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
+import traceback
 from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
@@ -60,9 +61,20 @@ def main() -> None:
         sys.exit(USER_ERROR)
     except ValueError as error:
         if not _is_ours(error):
+            _end_other_ranks()
             raise
         _say(str(error))
         sys.exit(USER_ERROR)
+    except Exception:
+        _end_other_ranks()
+        raise
+
+
+def _end_other_ranks() -> None:
+    """After a defect of ours on one of several ranks: the others would wait for it for ever."""
+    if int(os.environ.get("OMPI_COMM_WORLD_SIZE", os.environ.get("PMI_SIZE", "1"))) > 1 and "mpi4py.MPI" in sys.modules:
+        traceback.print_exc()
+        sys.modules["mpi4py.MPI"].COMM_WORLD.Abort(1)
 
 
 def _is_ours(error: ValueError) -> bool:

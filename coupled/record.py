@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -14,11 +14,13 @@ from numpy.typing import NDArray
 
 from coupled import cautions
 from coupled.build import Built
+from coupled.errors import LeitoError
 from coupled.observe import Observation, observe
 from coupled.output import checkpoint
 from coupled.output.folder import RunFolder
 from coupled.output.provenance import provenance, write_json
 from coupled.output.writers import Writers
+from coupled.ranks import root_alone
 from coupled.restep import FORMER_STEP, STEP
 from structure import solver_options
 
@@ -98,11 +100,28 @@ class Record:
         fields = None
         if frame and self.model.structure is not None:
             fields = self.model.structure.fields()
-        if self.writers is not None:
+
+        def put() -> None:
             if row:
                 self.writers.history.write(seen.row())
             if frame:
                 self.writers.write_frame(self.model, seen, fields)
+
+        self._written(put)
+
+    def _written(self, action: Callable[[], None]) -> None:
+        """Write on rank 0; a disk that refuses is a sentence on all ranks."""
+
+        def put() -> None:
+            try:
+                action()
+            except OSError as error:
+                raise LeitoError(
+                    f"{self.folder.path} cannot be written to ({error.strerror or error}): make room, then go on from "
+                    f"the last state there with --resume"
+                ) from None
+
+        root_alone(self.comm, put)
 
     def lacks(self, time: float) -> tuple[bool, bool]:
         """Whether there is no row and no frame of a time [s] or a later one yet. On rank 0."""
@@ -111,17 +130,16 @@ class Record:
 
     def save(self, state: dict[str, NDArray[Any]], entries: dict[str, float], name: str = checkpoint.NAME) -> None:
         """Write a state of the model, with its entries of the ledger [J/m] and the sums that belong to it."""
-        if self.comm.rank == 0:
-            spent = json.dumps(self.seconds | self.model.seconds).encode()
-            state = state | {
-                "run.start": np.array(list(self.start.values())),
-                "run.entries": np.array(list(entries.values())),
-                "run.first": np.array(list(self.first.values())),
-                "run.peaks": np.array(list(self.peaks.values())),
-                STEP: np.array(self.built.scene.time.step),
-                "run.seconds": np.frombuffer(spent, np.uint8),
-            }
-            checkpoint.save(self.folder.file(name), state, scene=self.built.scene.title)
+        spent = json.dumps(self.seconds | self.model.seconds).encode()
+        sums = {
+            "run.start": np.array(list(self.start.values())),
+            "run.entries": np.array(list(entries.values())),
+            "run.first": np.array(list(self.first.values())),
+            "run.peaks": np.array(list(self.peaks.values())),
+            STEP: np.array(self.built.scene.time.step),
+            "run.seconds": np.frombuffer(spent, np.uint8),
+        }
+        self._written(lambda: checkpoint.save(self.folder.file(name), state | sums, scene=self.built.scene.title))
 
     def write_provenance(self) -> None:
         """Versions, machine, threads and wall times so far."""

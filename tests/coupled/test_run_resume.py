@@ -1,5 +1,6 @@
 """Stopped, killed, broken: a run goes on from its last good checkpoint with the same bits."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -103,6 +104,24 @@ def test_a_cut_checkpoint_is_refused_in_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "checkpoint.h5").write_bytes(data[: len(data) // 2])
     with pytest.raises(LeitoError, match="cannot be read as a checkpoint.*--overwrite"):
         checkpoint.load(tmp_path / "checkpoint.h5")
+
+
+def test_a_full_disk_is_one_sentence_and_costs_nothing(
+    place: Path, scene: Scene, whole: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    full, moves, move = place / "runs" / "full", [0], os.replace
+
+    def refuse(*names: Path) -> None:
+        moves[0] += 1
+        if moves[0] == 30:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        move(*names)
+
+    monkeypatch.setattr(os, "replace", refuse)
+    with pytest.raises(LeitoError, match=r"full cannot be written to \(No space left on device\): make room.*--resume"):
+        run_scene(scene, out=full, threads=1, progress=False)
+    monkeypatch.undo()
+    assert_same_run(whole, run_scene(scene, out=full, resume=True, threads=1, progress=False))
 
 
 def test_a_run_that_explodes_stops_itself(tmp_path: Path) -> None:
