@@ -68,6 +68,12 @@ class Record:
             self.writers = Writers(folder.path, self.model, keep_until=self.model.time if self.resumed else None)
 
     def _take_up(self, saved: Mapping[str, NDArray[Any]]) -> None:
+        missing = sorted(self.model.state().keys() - saved.keys())
+        if missing:
+            raise LeitoError(
+                f"the state in {self.folder.path} lacks {missing[0]}, it is of another version: start anew with "
+                "--overwrite"
+            )
         self.model.restore(saved)
         self.start = dict(zip(self.start, saved["run.start"].tolist(), strict=True))
         self.first = dict(zip(self.first, saved["run.first"].tolist(), strict=True))

@@ -20,11 +20,12 @@ from coupled.templates import write_template
 
 DURATION = 0.04
 SETS = [
-    f"time.duration={DURATION}", "output.history_interval=0.0005", "output.frames_per_second=250",
+    f"time.duration={DURATION}", "output.history_interval=0.001", "output.frames_per_second=100",
     "output.checkpoint_interval=0.003", "output.figures=false", "bed.time.duration=0.3", "bed.output.figures=false",
 ]  # fmt: skip
 WAYS: dict[str, tuple[list[str], int]] = {  # changes of the scene, kills
-    "predicted": ([], 10),
+    "glued": ([], 10),
+    "facets": (["interface.kind=facets"], 10),
     "sub-cycled": (["interface.substeps=2", "structure.density=10000"], 3),  # heavier, for the stiffness ratio
     "lagged": (["interface.exchange=lagged"], 3),
     "facets": (["interface.kind=facets"], 10),
