@@ -21,7 +21,8 @@ OURS = (
     SCENE, SUMMARY, checkpoint.NAME, BEFORE_FAILURE, "history.csv", "grains.xdmf", "structure.xdmf", "provenance.json",
     "log.txt", "frames", "figures",
 )  # fmt: skip
-FREE_TO_CHANGE = ("time.duration", "time.step", "interface.exchange", "output.", "title")  # when a run is taken up again
+# When a run is taken up again:
+FREE_TO_CHANGE = ("time.duration", "time.step", "interface.exchange", "output.", "title")
 
 
 @dataclass(frozen=True)

@@ -67,22 +67,6 @@ def test_ctrl_c_leaves_a_checkpoint_and_says_how_to_go_on(place: Path, scene: Sc
     assert_same_run(whole, run_scene(scene, out=place / "runs" / "stopped", resume=True, threads=1, progress=False))
 
 
-def test_killed_run_goes_on_to_the_same_bits(place: Path, scene: Scene, whole: Path) -> None:
-    process = _start(place, "killed")
-    _wait_for(place / "runs" / "killed" / "checkpoint.h5", process)
-    time.sleep(0.25)
-    process.kill()
-    process.communicate()
-    killed = place / "runs" / "killed"
-    # what a kill in the middle of writing leaves: half a checkpoint, half a frame, half a row
-    good = (killed / "checkpoint.h5").read_bytes()
-    (killed / "checkpoint.part").write_bytes(good[: len(good) // 2])
-    (killed / "frames" / "grains.000099.h5").write_bytes(b"\x89HDF\r\n half a frame")
-    with open(killed / "history.csv", "a") as file:
-        file.write("0.39")
-    assert_same_run(whole, run_scene(scene, out=killed, resume=True, threads=1, progress=False))
-
-
 def test_two_threads_give_the_bits_of_one(place: Path, scene: Scene, whole: Path) -> None:
     two = run_scene(scene, out=place / "runs" / "threads", threads=2, progress=False)
     assert_same_run(whole, two)
