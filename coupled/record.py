@@ -68,8 +68,8 @@ class Record:
             self.writers = Writers(folder.path, self.model, keep_until=self.model.time if self.resumed else None)
 
     def _take_up(self, saved: Mapping[str, NDArray[Any]]) -> None:
-        missing = sorted(self.model.state().keys() - saved.keys())
-        if missing:
+        needed = {name for name in self.model.state() if not name.startswith("exchange.")}  # another may go on
+        if missing := sorted(needed - saved.keys()):
             raise LeitoError(
                 f"the state in {self.folder.path} lacks {missing[0]}, it is of another version: start anew with "
                 "--overwrite"

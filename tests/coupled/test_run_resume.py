@@ -2,6 +2,7 @@
 
 import errno
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -163,3 +164,14 @@ def test_beam_vibration_under_mpirun_gives_the_serial_answer(place: Path) -> Non
         own = {"J/m": energy, "m": 1.0, "rad": 1.0, "-": 1e-3}.get(name.partition("[")[2].rstrip("]"), 0.0)
         atol = 1e-9 * max(scale[column], own)
         np.testing.assert_allclose(rows[1][:, column], rows[0][:, column], rtol=1e-9, atol=atol, err_msg=name)
+
+
+def test_a_state_that_lacks_something_is_refused_in_one_sentence(place: Path, scene: Scene, whole: Path) -> None:
+    old = place / "runs" / "old"
+    shutil.copytree(whole, old)
+    state, title = checkpoint.load(old / "checkpoint.h5")
+    del state["model.boundary"]
+    checkpoint.save(old / "checkpoint.h5", state, scene=title)
+    (old / "summary.json").unlink()
+    with pytest.raises(LeitoError, match="lacks model.boundary, it is of another version: start anew with --overwrite"):
+        run_scene(scene, out=old, resume=True, threads=1, progress=False)
