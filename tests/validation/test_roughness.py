@@ -253,10 +253,10 @@ steepest slope is that of one grain of the mean size d that rides over two of th
 
 {table}
 
-Facets show mu itself, to the digits given, as long as the bed bears it. Glued grains add to it, the less the closer they
-stand, and far less than the slope of one grain on two of them: the grains ride up and down, a rigid plate over many of
-them does neither, and what is lost is what the bed takes up. Above a third or so the bed fails before the plate
-slides; then the face no longer matters, and the beds differ more than the faces.
+Facets show mu itself, to the digits given, as long as the bed bears it. Glued grains add to it, the less the closer
+they stand, and far less than the slope of one grain on two of them: many grains at once hardly let the plate rise, and
+only what the bed takes up for good is drag. Above a third or so the bed fails before the plate slides; then the face
+no longer matters, and the beds differ more than the faces.
 """
 
 
