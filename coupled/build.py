@@ -15,10 +15,11 @@ import meshes
 import particles as dem
 import structure as fem
 from coupled.errors import LeitoError
-from coupled.exchange_limit import exchange_limit
+from coupled.exchange_limit import ITERATED, exchange_limit
 from coupled.facets import FacetInterface
 from coupled.glued import BODY, GluedGrains
 from coupled.interface import Interface, stiffness_ratio
+from coupled.iterated import Iteration
 from coupled.laws import contact_law, interface_spring
 from coupled.loads import load_of
 from coupled.model import Model
@@ -81,6 +82,7 @@ def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI
         interface=interface,
         substeps=1 if scene.interface is None else scene.interface.substeps,
         lagged=scene.interface is not None and scene.interface.exchange == "lagged",
+        iteration=_iteration(scene),
         time_step=scene.time.step,
     )
     ratio = _stiffness_ratio(scene, model, contact, comm)
@@ -251,8 +253,18 @@ def _row_places(scene: Scene, row: Any, interface: Interface | None) -> NDArray[
 
 def stable_ratio(scene: Scene) -> float:
     """The stiffness ratio up to which the exchange of a scene is stable on fixed partners."""
+    if scene.interface.exchange == "iterated":
+        return ITERATED
     scheme = _scheme(scene.structure) if scene.structure.kind == "elastic" else fem.Newmark()
     return exchange_limit(scheme, scene.interface.substeps)
+
+
+def _iteration(scene: Scene) -> Iteration | None:
+    table = scene.interface
+    if table is None or table.exchange != "iterated":
+        return None
+    asked = {"tolerance": table.tolerance, "most": table.iterations}
+    return Iteration(**{name: value for name, value in asked.items() if value is not None})
 
 
 def _stiffness_ratio(scene: Scene, model: Model, contact: dem.Contact | None, comm: MPI.Intracomm) -> float:

@@ -26,5 +26,9 @@ class SceneError(LeitoError):
         self.file = file
 
 
+class ExchangeError(LeitoError):
+    """An exchange between grains and structure that does not converge."""
+
+
 class Interrupted(LeitoError):
     """A run stopped by the user; the message says how to go on."""

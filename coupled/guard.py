@@ -8,10 +8,10 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from coupled import watchdog
-from coupled.errors import LeitoError
-from coupled.model import Model
+from coupled.errors import ExchangeError, LeitoError
+from coupled.model import Model, Snapshot
 from coupled.ranks import on_root, together
-from coupled.watchdog import Glance, Sign
+from coupled.watchdog import Glance, Remedy, Sign
 from particles import ParticleError
 from structure import StructureError
 
@@ -24,7 +24,7 @@ FAULTS = (ParticleError, StructureError, LeitoError)  # what a step may raise be
 class Good(NamedTuple):
     """A state that all watchdogs have passed."""
 
-    state: dict[str, NDArray[Any]]
+    moment: Snapshot
     glance: Glance
     step: int
 
@@ -38,13 +38,15 @@ class Failed(LeitoError):
         The first one, with its place.
     good : Good
         The last good look before it.
+    state : dict
+        Of the model at that look.
     time : float
         Of the sign [s].
     """
 
-    def __init__(self, sign: Sign, good: Good, time: float) -> None:
+    def __init__(self, sign: Sign, good: Good, state: dict[str, NDArray[Any]], time: float) -> None:
         super().__init__(sign.what)
-        self.sign, self.good, self.time = sign, good, time
+        self.sign, self.good, self.state, self.time = sign, good, state, time
 
 
 class Guard:
@@ -67,7 +69,7 @@ class Guard:
         self._model, self._start, self._comm = model, start, comm
         self._turned, self._wait, self._waited = False, 1, 0
         seen = watchdog.glance(model, start)
-        self._good = Good(model.state(), seen, model.steps_done)
+        self._good = Good(model.snapshot(), seen, model.steps_done)
         sign = self._sign(seen)
         if sign is not None:
             raise watchdog.Unstable(f"t = {model.time:g} s, before the first step: {sign.what}; change the scene")
@@ -94,7 +96,7 @@ class Guard:
             if sign is not None:
                 raise self._failure(sign, self._model.steps_done, rattles=True)
             self._wait = min(2 * self._wait, LONGEST_WAIT)
-        self._good = Good(self._model.state(), seen, self._model.steps_done)
+        self._good = Good(self._model.snapshot(self._good.moment), seen, self._model.steps_done)
         return self._good
 
     def _turns_twice(self) -> bool:
@@ -114,7 +116,7 @@ class Guard:
         try:
             together(self._comm, lambda: self._model.advance(steps))
         except FAULTS as fault:
-            return Sign(str(fault), "step" if isinstance(fault, ParticleError) else "structure")
+            return Sign(str(fault), _remedy(fault))
         return None
 
     def _sign_again(self, rattles: bool) -> Sign | None:
@@ -131,13 +133,21 @@ class Guard:
         first one. The model is left at the last step without a sign.
         """
         model, good, time = self._model, self._good, self._model.time
-        model.restore(good.state)
+        model.rewind(good.moment)
+        state, before = model.state(), model.snapshot()
         for stride in (max(1, (until - good.step) // ROUGH), 1):
-            found, before = None, model.state()
+            found, before = None, model.snapshot(before)
             while found is None and model.steps_done < until:
-                before, steps = model.state(), min(stride, until - model.steps_done)
+                before, steps = model.snapshot(before), min(stride, until - model.steps_done)
                 time = (model.steps_done + steps) * model.window
                 found = self._try(steps) or self._sign_again(rattles)
             sign = found or sign
-            model.restore(before)
-        return Failed(sign, good, time)
+            model.rewind(before)
+        return Failed(sign, good, state, time)
+
+
+def _remedy(fault: Exception) -> Remedy:
+    """What to change about a step that could not be taken."""
+    if isinstance(fault, ExchangeError):
+        return "exchange"
+    return "step" if isinstance(fault, ParticleError) else "structure"

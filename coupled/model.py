@@ -3,17 +3,28 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coupled.interface import Interface, Pushed
+from coupled.iterated import IteratedExchange, Iteration
 from particles import ParticleSystem
+from particles import Snapshot as GrainSnapshot
 from structure import Structure, agreed_force, withhold_force
 
 Floats = NDArray[np.float64]
+
+
+class Snapshot(NamedTuple):
+    """A moment of a model in memory, this rank's share."""
+
+    grains: GrainSnapshot | None
+    structure: dict[str, Any] | None
+    own: tuple[int, Floats | None, Pushed]
+    exchange: dict[str, Floats]
 
 
 class Model:
@@ -29,6 +40,7 @@ class Model:
       the interface at any step.
     - lagged (the source's order): the structure steps with the forces of the last window; the
       interface moves to where it went while the grains take their substeps.
+    - iterated: the window is run again until both agree on its end (`IteratedExchange`).
 
     Under MPI the structure lives on all ranks, the grains on rank 0, where `particles` is not None.
 
@@ -42,6 +54,8 @@ class Model:
         Grain steps per structure step.
     lagged : bool
         The source's order of the exchange.
+    iteration : Iteration, optional
+        Have the iterated exchange.
 
     Attributes
     ----------
@@ -59,6 +73,7 @@ class Model:
         interface: Interface | None = None,
         substeps: int = 1,
         lagged: bool = False,
+        iteration: Iteration | None = None,
         time_step: float,
     ) -> None:
         self.particles, self.structure, self.interface = particles, structure, interface
@@ -74,6 +89,9 @@ class Model:
             self._take(interface.forces(particles))
         if structure is not None and interface is not None:
             structure.begin_under(self.nodal_force)
+        self.iterated = None
+        if iteration is not None and interface is not None:
+            self.iterated = IteratedExchange(self, iteration)
 
     @property
     def time(self) -> float:
@@ -93,16 +111,22 @@ class Model:
                 self.structure.advance(self.nodal_force)
             self.seconds["structure"] += time.perf_counter() - started
         else:
-            step = self._lagged_step if self.lagged else self._predicted_step
+            step = self._step()
             for _ in range(steps):
                 step()
             if self.structure.comm.size > 1:  # an error of the last step reaches the ranks without grains here
                 agreed_force(self.nodal_force, self.nodal_force.shape, self.structure.comm)
         self.steps_done += steps
 
+    def _step(self) -> Callable[[], None]:
+        """The exchange in use."""
+        if self.iterated is not None:
+            return self.iterated.step
+        return self._lagged_step if self.lagged else self._predicted_step
+
     def _predicted_step(self) -> None:
         started, before = time.perf_counter(), self.nodal_force
-        self._move_grains(self.structure.predict(self.window))
+        self.move_grains(self.structure.predict(self.window))
         moved = time.perf_counter()
         force, ahead = self.nodal_force, 0.5 * (self.substeps - 1) / self.substeps
         self.structure.advance(force + ahead * (force - before) if ahead else force)
@@ -113,11 +137,11 @@ class Model:
         started = time.perf_counter()
         self.structure.advance(self.nodal_force)
         stepped = time.perf_counter()
-        self._move_grains(self.structure.boundary_displacement)
+        self.move_grains(self.structure.boundary_displacement)
         self.seconds["structure"] += stepped - started
         self.seconds["exchange"] += time.perf_counter() - stepped
 
-    def _move_grains(self, displacement: Floats) -> None:
+    def move_grains(self, displacement: Floats) -> None:
         """Take the grains through one window that ends with the boundary at `displacement`."""
         if self.particles is None:
             return
@@ -147,6 +171,30 @@ class Model:
         """Forces (k, 2) [N/m] on the structure now: one for each glued grain; with facets one for each grain."""
         return self.interface.contact_forces(self.particles)
 
+    def snapshot(self, into: Snapshot | None = None) -> Snapshot:
+        """The present moment, for `rewind`; the memory of a former one, `into`, is used again."""
+        grains = None
+        if self.particles is not None:
+            grains = self.particles.snapshot(None if into is None else into.grains)
+        body = None if self.structure is None else self.structure.snapshot()
+        exchange = {} if self.iterated is None else self.iterated.state()
+        own = (self.steps_done, self._boundary, Pushed(self.nodal_force, self.reaction))
+        return Snapshot(grains, body, own, exchange)
+
+    def rewind(self, snapshot: Snapshot, *, forget: bool = True) -> None:
+        """Go back to a moment of this model: what follows has the same bits.
+
+        `forget`: what the iterated exchange has learnt since.
+        """
+        self.steps_done, self._boundary, pushed = snapshot.own
+        self._take(pushed)
+        if snapshot.structure is not None:
+            self.structure.rewind(snapshot.structure)
+        if snapshot.grains is not None:
+            snapshot.grains.rewind()
+        if self.iterated is not None and forget:
+            self.iterated.restore(snapshot.exchange)
+
     def state(self) -> dict[str, NDArray[Any]]:
         """Everything that is needed to go on with the same bits; whole on rank 0."""
         saved: dict[str, NDArray[Any]] = {"model.steps_done": np.array(self.steps_done)}
@@ -156,6 +204,8 @@ class Model:
             saved |= {f"structure.{name}": array for name, array in self.structure.state().items()}
         if self.particles is not None:
             saved |= {f"particles.{name}": array for name, array in self.particles.state().items()}
+        if self.iterated is not None:
+            saved |= {f"exchange.{name}": array for name, array in self.iterated.state().items()}
         return saved
 
     def restore(self, saved: Mapping[str, NDArray[Any]]) -> None:
@@ -167,6 +217,8 @@ class Model:
         if self.particles is not None:
             self.particles.restore(_part(saved, "particles."))
             self._take(Pushed(np.array(saved["model.nodal_force"]), np.array(saved["model.reaction"])))
+        if self.iterated is not None:
+            self.iterated.restore(_part(saved, "exchange."))
 
 
 def _part(saved: Mapping[str, NDArray[Any]], prefix: str) -> dict[str, NDArray[Any]]:

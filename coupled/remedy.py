@@ -49,4 +49,6 @@ def remedy(built: Built, sign: Sign) -> str:
         said += f" (r = {built.stiffness_ratio:.3g} of the coupling should be below {stable_ratio(built.scene):.4g})"
         if interface.substeps > 1:
             said += ", or fewer interface.substeps"
+    if interface.exchange == "iterated" and sign.remedy == "exchange":
+        said += ", or allow more interface.iterations"
     return said

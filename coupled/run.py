@@ -177,7 +177,7 @@ class Run:
 
     def _interrupt(self, guard: Guard) -> None:
         good = guard.keep()
-        self.record.save(good.state, good.glance.balance.entries)
+        self.record.save(self.model.state(), good.glance.balance.entries)
         sentence = f"stopped at t = {self.model.time:g} s of {self.scene.time.duration:g} s; go on with --resume"
         self.record.log(sentence)
         raise Interrupted(sentence)
@@ -185,7 +185,7 @@ class Run:
     def _fail(self, failed: Failed) -> None:
         """Leave the last good state and the last sound picture, and say what went wrong and what to change."""
         model, record, good = self.model, self.record, failed.good
-        record.save(good.state, good.glance.balance.entries, BEFORE_FAILURE)
+        record.save(failed.state, good.glance.balance.entries, BEFORE_FAILURE)
         row, frame = on_root(self.comm, lambda: record.lacks(model.time))
         record.write(observe(model, record.start), row=row, frame=frame and self.events.frames is not None)
         change = on_root(self.comm, lambda: remedy(self.built, failed.sign))

@@ -51,6 +51,12 @@ def summarise(
         "interface_residual": numbers.get("interface_residual", 0.0),
         "momentum_residual_max": peaks["momentum_residual"],
     }
+    if model.iterated is not None:
+        summary |= {
+            "exchange_iterations": model.iterated.trials / max(1, model.steps_done),
+            "exchange_unsettled": model.iterated.unsettled,
+            "exchange_farthest": model.iterated.farthest,
+        }
     summary |= contact_numbers(built.scene)
     if model.structure is not None:
         summary |= {
@@ -95,6 +101,12 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
         lines.append(
             f"  stiffness ratio r        {summary['stiffness_ratio_r']:12.3g}       stable up to "
             f"{summary['stable_ratio']:.4g} on fixed partners"
+        )
+    if "exchange_iterations" in summary:
+        unsettled, farthest = summary["exchange_unsettled"], summary["exchange_farthest"]
+        lines.append(
+            f"  iterations per step      {summary['exchange_iterations']:12.3g}       of the exchange; {unsettled} "
+            "steps not settled" + (f", by {farthest:.1g} of the motion at most" if unsettled else "")
         )
     parts = ", ".join(f"{name} {seconds:.1f}" for name, seconds in summary["wall_seconds_by_part"].items() if seconds)
     lines.append(f"  wall time [s]            {parts}")

@@ -18,6 +18,7 @@ from particles.crowding import packing_limit
 from particles.errors import ParticleError
 from particles.facets import Facets
 from particles.network import StiffnessNetwork, stiffness_network
+from particles.snapshot import Snapshot
 from particles.stability import StepLimit, sharp_limit
 from particles.state import Grains
 from particles.system import ContactLook, ParticleSystem, continued
@@ -41,6 +42,7 @@ __all__ = [
     "MindlinFriction",
     "ParticleError",
     "ParticleSystem",
+    "Snapshot",
     "StepLimit",
     "StiffnessNetwork",
     "Wall",

@@ -25,6 +25,7 @@ from particles.kernels.layout import (
 from particles.kernels.motion import kick
 from particles.neighbours import LISTS_PER_SORT, ContactList, block_starts
 from particles.periodic import checked_period
+from particles.snapshot import Snapshot
 from particles.state import Grains
 from particles.walls import Wall
 
@@ -304,6 +305,14 @@ class ParticleSystem:
         total = np.array([g.fx.sum(), g.fy.sum()]) + others.sum(axis=0)
         scale = np.hypot(g.fx, g.fy).sum() + np.hypot(*others.T).sum()
         return float(np.hypot(*total) / scale) if scale > 0.0 else 0.0
+
+    # -- going back -----------------------------------------------------------------------------
+
+    def snapshot(self, into: Snapshot | None = None) -> Snapshot:
+        """The present state in memory, for `Snapshot.rewind`; `into` is a former one of this system, to be replaced."""
+        kept = Snapshot(self) if into is None else into
+        kept.take()
+        return kept
 
     # -- checkpoint ---------------------------------------------------------------------------
 

@@ -18,6 +18,7 @@ from structure.loads.load import Load
 from structure.loads.vectors import LoadVectors
 from structure.material import PlaneStrain, Rayleigh
 from structure.results import StructureEnergies, StructureFields, StructurePeaks, cell_kind
+from structure.rewinding import Rewinding, Snapshot
 from structure.schemes import Newmark, Scheme
 from structure.solvers.solver import factorise
 from structure.theories.choice import theory_of
@@ -27,7 +28,7 @@ from structure.theories.theory import TheoryName
 STATE_FIELDS = ("displacement", "velocity", "acceleration")
 
 
-class ElasticStructure:
+class ElasticStructure(Rewinding):
     """Elastic body without supports, ``M a + C v + f_int(u) = loads + boundary forces``; see `Structure`.
 
     What f_int is, and how far the body may turn and stretch, is said by its theory.
@@ -58,6 +59,11 @@ class ElasticStructure:
         [m], [m/s], [m/s^2], in the order of ``polyline.points``, on every rank; new arrays at
         each step.
     """
+
+    REPLACED = (
+        "_steps", "_loss", "_scheme_loss", "_external_work", "_boundary_work", "_external", "_force",
+        "boundary_displacement", "boundary_velocity", "boundary_acceleration",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -284,6 +290,16 @@ class ElasticStructure:
         self._exchange.add(self._force, self._stepper.force)
         self._theory.recall(state)
         self._read_boundary()
+
+    def snapshot(self) -> Snapshot:
+        """See `Rewinding`."""
+        return super().snapshot() | {"stepper": self._stepper.snapshot()}
+
+    def rewind(self, snapshot: Snapshot) -> None:
+        """See `Rewinding`."""
+        super().rewind(snapshot)
+        self._stepper.rewind(snapshot["stepper"])
+        self._stepper.carried = self.boundary_displacement[0]
 
     def _predictor(self) -> NDArray[np.float64]:
         """Newmark's ``u + dt v + (1/2 - beta) dt^2 a`` [m], the shape that a pressure follows.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from meshes import BoundaryPolyline, StructureMesh
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
+from structure.rewinding import Snapshot
 
 Floats = NDArray[np.float64]
 
@@ -95,4 +96,12 @@ class Structure(Protocol):
 
     def restore(self, state: dict[str, Floats]) -> None:
         """Take up a `state` of the same structure; rank 0's counts."""
+        ...
+
+    def snapshot(self) -> Snapshot:
+        """This rank's share of the present state, kept in memory."""
+        ...
+
+    def rewind(self, snapshot: Snapshot) -> None:
+        """Go back to a `snapshot` of this object: the steps that follow have the same bits."""
         ...

@@ -30,9 +30,14 @@ class Interface(Table):
     velocity: Literal["shape", "mean"] = Field(
         "shape", description="velocity of a glued grain: interpolated, or the facet's mean (G)"
     )
-    exchange: Literal["predicted", "lagged"] = Field(
-        "predicted", description="order of the exchange: predicted interface, or G's lagged order"
+    exchange: Literal["predicted", "lagged", "iterated"] = Field(
+        "predicted",
+        description="order of the exchange: predicted interface, G's lagged order, or iterated until both sides agree",
     )
+    tolerance: Positive | None = Field(
+        None, description="iterated: largest change of the boundary by a further iteration, over its motion in the step"
+    )
+    iterations: Count | None = Field(None, description="iterated: most iterations per step of the structure")
     substeps: Count = Field(1, description="grain steps per step of the structure")
     largest_stiffness_ratio: Positive | None = Field(
         None, description="stiffness ratio r above which a run is refused [-]"

@@ -19,12 +19,13 @@ from structure.loads.load import Load
 from structure.loads.vectors import LoadVectors
 from structure.loads.wrench import FollowingLoads, Wrench
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
+from structure.rewinding import Rewinding
 from structure.rigid.motion import NO_STRESS, RigidMotion, rigid_fields
 
 SWEEPS = 100
 
 
-class FreeRigid:
+class FreeRigid(Rewinding):
     """Rigid body under loads and boundary forces.
 
     Centroid by average acceleration. Rotation by a midpoint rule: with ``da`` the turn of the
@@ -41,6 +42,11 @@ class FreeRigid:
         Shape, density [kg/m^3], step [s], external loads. The points where loads act turn with
         the body; the directions of loads stay, unless they follow.
     """
+
+    REPLACED = (
+        "_steps", "_motion", "_force", "_boundary", "_external", "_wrench", "_external_work", "_boundary_work",
+        "boundary_displacement", "boundary_velocity", "boundary_acceleration",
+    )  # fmt: skip
 
     def __init__(
         self,

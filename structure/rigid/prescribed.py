@@ -11,10 +11,11 @@ from structure.boundary import agreed_force
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
+from structure.rewinding import Rewinding
 from structure.rigid.motion import NO_STRESS, RigidMotion, rigid_fields
 
 
-class PrescribedRigid:
+class PrescribedRigid(Rewinding):
     """Rigid body whose displacement is piecewise linear in time; it never turns.
 
     At a way point the velocity is that of the piece ahead; after the last one the body rests.
@@ -31,6 +32,11 @@ class PrescribedRigid:
     density : float, optional
         [kg/m^3]. Without it the mass is 0 and no kinetic energy is counted.
     """
+
+    REPLACED = (
+        "_steps", "_motion", "_force", "_drive_work", "_boundary_work",
+        "boundary_displacement", "boundary_velocity", "boundary_acceleration",
+    )  # fmt: skip
 
     def __init__(
         self,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from abc import ABC, abstractmethod
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,6 +111,18 @@ class ConservingStepper(ABC):
     def kinetic(self) -> float:
         """See `Stepper`: ``v . M v/2``."""
         return float(self.velocity @ self._weighed(self.velocity)) / 2
+
+    def snapshot(self) -> tuple[Any, ...]:
+        """See `Stepper`."""
+        arrays = (self.displacement, self.velocity, self.acceleration, self.force, self._force_before)
+        return *(array.copy() for array in arrays), self.turn
+
+    def rewind(self, snapshot: tuple[Any, ...]) -> None:
+        """See `Stepper`."""
+        arrays = (self.displacement, self.velocity, self.acceleration, self.force, self._force_before)
+        *kept, self.turn = snapshot
+        for array, values in zip(arrays, kept, strict=True):
+            array[:] = values
 
     def _balance_acceleration(self) -> None:
         """``M a = f - c_a M v - f_int`` at the present time."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
@@ -111,6 +113,24 @@ class NewmarkStepper:
     def damped_before(self) -> NDArray[np.float64] | None:
         """C times the predicted velocity of the last step [N/m], where the loss of the next one needs it."""
         return self._damped_before.array if self._three_terms else None
+
+    def snapshot(self) -> tuple[Any, ...]:
+        """See `Stepper`."""
+        return *(array.copy() for array in self._kept()), self._damped_known
+
+    def rewind(self, snapshot: tuple[Any, ...]) -> None:
+        """See `Stepper`."""
+        *kept, self._damped_known = snapshot
+        for array, values in zip(self._kept(), kept, strict=True):
+            array[:] = values
+
+    def _kept(self) -> list[NDArray[np.float64]]:
+        arrays = [self.displacement, self.velocity, self.acceleration, self.force]
+        if self.looks_back:
+            arrays.append(self._f_before.array)
+        if self._three_terms:
+            arrays += [self._damped_before.array, self._damped.array]
+        return arrays
 
     def step(self) -> None:
         """One step; `force` acts at its end."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,14 @@ class Stepper(Protocol):
 
     def scheme_loss_of_step(self) -> float:
         """This rank's share of what the scheme took [J/m] in the last step; asked for where it does not conserve."""
+        ...
+
+    def snapshot(self) -> tuple[Any, ...]:
+        """Copies of all that the next step starts from."""
+        ...
+
+    def rewind(self, snapshot: tuple[Any, ...]) -> None:
+        """Go back to a `snapshot`."""
         ...
 
     def kinetic(self) -> float:

@@ -300,6 +300,24 @@ BAD: dict[str, Case] = {
         ("missing", 'row under "bottom"'),
     ),
     "unknown interface": (TUBE, {"interface.kind": "mortar"}, "interface.kind", ("'facets'",)),
+    "tolerance of an exchange that does not iterate": (
+        TUBE,
+        {"interface.tolerance": 1e-5},
+        "interface.tolerance",
+        ('exchange = "iterated"',),
+    ),
+    "loose tolerance": (
+        TUBE,
+        {"interface.exchange": "iterated", "interface.tolerance": 0.1},
+        "interface.tolerance",
+        ("0.01", '"predicted"'),
+    ),
+    "one iteration": (
+        TUBE,
+        {"interface.exchange": "iterated", "interface.iterations": 1},
+        "interface.iterations",
+        ("at least 3",),
+    ),
     "no substep": (TUBE, {"interface.substeps": 0}, "interface.substeps", ("at least 1",)),
     "row under a bare boundary": (
         BEAM_ON_ROW,

@@ -13,11 +13,13 @@ EXCHANGES: dict[str, dict[str, Any]] = {
     "predicted": {},
     "substeps": {"substeps": 4},
     "lagged": {"exchange": "lagged"},
+    "iterated": {"exchange": "iterated"},
+    "iterated-substeps": {"exchange": "iterated", "substeps": 4},
 }
 
 
 # Of the error of displacements in the step of the structure, without dashpots.
-ORDERS = {"predicted": 2.0, "substeps": 2.0, "lagged": 1.0}
+ORDERS = {"predicted": 2.0, "substeps": 2.0, "lagged": 1.0, "iterated": 2.0, "iterated-substeps": 2.0}
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,13 @@ class Way:
         return radius if self.interface == "glued" else 0.0
 
 
-WAYS = [Way(interface, exchange) for interface in INTERFACES for exchange in EXCHANGES]
+# The iterated exchange knows no interface: without sub-cycling it is asked of glued grains alone.
+WAYS = [
+    Way(interface, exchange)
+    for interface in INTERFACES
+    for exchange in EXCHANGES
+    if (interface, exchange) != ("facets", "iterated")
+]
 GLUED = Way("glued", "predicted")
 
 

@@ -11,6 +11,9 @@ from coupled.scene.shape import Shape
 if TYPE_CHECKING:
     from coupled.scene.scene import Scene
 
+LOOSEST_TOLERANCE = 1e-2  # what the predicted exchange misses of the boundary's motion in a step
+FEWEST_ITERATIONS = 3
+
 
 def check_interface(scene: Scene) -> None:
     """Check the interface against the shape that carries it."""
@@ -25,6 +28,7 @@ def check_interface(scene: Scene) -> None:
         )
     shape = structure.shape
     _check_boundaries(interface, shape)
+    _check_iteration(interface)
     if interface.kind == "facets" and interface.velocity == "mean":
         raise refusal(
             "interface.velocity",
@@ -42,6 +46,27 @@ def check_interface(scene: Scene) -> None:
                 interface.diameter,
                 f"makes glued grains overlap, {spacing:.6g} m apart; give at most that, or fewer per facet",
             )
+
+
+def _check_iteration(interface: Interface) -> None:
+    for key in ("tolerance", "iterations"):
+        value = getattr(interface, key)
+        if value is not None and interface.exchange != "iterated":
+            raise refusal(
+                f"interface.{key}", value, 'is that of the iterated exchange; remove it or say exchange = "iterated"'
+            )
+    if interface.tolerance is not None and interface.tolerance > LOOSEST_TOLERANCE:
+        raise refusal(
+            "interface.tolerance",
+            interface.tolerance,
+            f'is above {LOOSEST_TOLERANCE:g}, more than the exchange gains; give less, or exchange = "predicted"',
+        )
+    if interface.iterations is not None and interface.iterations < FEWEST_ITERATIONS:
+        raise refusal(
+            "interface.iterations",
+            interface.iterations,
+            f"is too few: most windows need two; give at least {FEWEST_ITERATIONS}",
+        )
 
 
 def _check_boundaries(interface: Interface, shape: Shape) -> None:
