@@ -48,53 +48,45 @@ class OnGluedDiscs:
 
 
 class OnFacets:
-    """Each disc meets the chain of nodes `chain`, whose solid is on its left, wherever its distance has an extremum.
+    """Each disc meets the nearest point of the chain of nodes `chain`, whose solid is on its left.
 
-    Feet on facets and on corners that point at the disc are minima and push; nodes of notches between two feet are
-    maxima and pull as much. What is left is the push of the nearest point but in notches that a disc covers, where
-    that would jump from one facet to the other.
+    Places in the plane are complex numbers here.
     """
 
     def __init__(self, body: IndependentBody, discs: Discs, chain: np.ndarray) -> None:
-        self.body, self.discs, self.chain = body, discs, chain
+        self.discs, self.chain, self.size = discs, chain, body.size
+        self.reference, self.centres = _plane(body.points)[chain], _plane(discs.centres)
+        self.speed = 0.0 if np.isscalar(discs.velocity) else _plane(discs.velocity)
+        middle = (self.reference[1:] + self.reference[:-1]) / 2
+        self.candidates = np.argsort(np.abs(self.centres[:, None] - middle), axis=1)[:, :2]
+        self.rows = np.arange(len(self.centres))
 
     def __call__(self, time: float, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Nodal forces, and the normal force of each disc."""
-        discs, chain, speeds = self.discs, self.chain, v.reshape(-1, 2)
-        places, velocity = (self.body.points + u.reshape(-1, 2))[chain], speeds[chain]
-        centres = (discs.centres + time * discs.velocity)[:, None]
-        own = np.broadcast_to(discs.velocity, discs.centres.shape)[:, None]
-        along = np.diff(places, axis=0)
-        after_start = np.sum((centres - places[:-1]) * along, axis=2) >= 0.0  # (discs, facets)
-        after_end = np.sum((centres - places[1:]) * along, axis=2) >= 0.0
-        size = np.sum(along**2, axis=1)
-        share = np.sum((centres - places[:-1]) * along, axis=2) / size
-        nodal, pushes = np.zeros((len(self.body.points), 2)), np.zeros(len(centres))
+        discs, chain = self.discs, self.chain
+        places, speeds = self.reference + _plane(u)[chain], _plane(v)[chain]
+        along = np.diff(places)
+        unit = along / (along.real**2 + along.imag**2)
+        from_begin = (self.centres + time * self.speed)[:, None] - places[self.candidates]
+        share = np.clip((from_begin * unit.conj()[self.candidates]).real, 0.0, 1.0)
+        arms = share * along[self.candidates] - from_begin
+        best = self.rows, np.argmin(arms.real**2 + arms.imag**2, axis=1)
+        facet, share, arm = self.candidates[best], share[best], arms[best]
+        distance = np.abs(arm)
+        normal = arm / distance
+        speed = (1 - share) * speeds[facet] + share * speeds[facet + 1] - self.speed
+        push = law(discs, discs.radius - distance, -(speed * normal.conj()).real)
+        nodes = np.concatenate([chain[facet], chain[facet + 1]])
+        force = np.concatenate([(1 - share) * push * normal, share * push * normal])
+        nodal = np.zeros(self.size)
+        for component, values in enumerate((force.real, force.imag)):
+            nodal[component::2] = np.bincount(nodes, values, self.size // 2)
+        return nodal, push
 
-        def add(
-            sign: np.ndarray, foot: np.ndarray, speed: np.ndarray, ends: list[tuple[np.ndarray, np.ndarray]]
-        ) -> None:
-            """Forces of the features with a sign, shared by nodes `ends` (node of each feature, share of each pair)."""
-            arm = foot - centres
-            distance = np.hypot(*np.moveaxis(arm, 2, 0))
-            near = (sign != 0) & (distance < discs.radius)
-            normal = arm / np.where(near, distance, 1.0)[:, :, None]
-            closing = -np.sum((speed - own) * normal, axis=2)
-            push = near * sign * law(discs, discs.radius - distance, closing)
-            pushes[:] += push.sum(axis=1)
-            for node, part in ends:
-                np.add.at(nodal, node, ((part * push)[:, :, None] * normal).sum(axis=0))
 
-        foot = places[:-1] + share[:, :, None] * along
-        speed = velocity[:-1] + share[:, :, None] * np.diff(velocity, axis=0)
-        one = np.ones_like(share)
-        add(after_start.astype(int) - after_end, foot, speed, [(chain[:-1], one - share), (chain[1:], share)])
-        left, right = np.pad(after_end, ((0, 0), (1, 0)), constant_values=True), np.pad(after_start, ((0, 0), (0, 1)))
-        if chain[0] == chain[-1]:  # closed: the last node is the first, and has been counted
-            left[:, 0], right[:, -1] = left[:, -1], left[:, -1]
-        here = np.broadcast_to(places, (len(centres), *places.shape))
-        add(left.astype(int) - right, here, velocity, [(chain, np.ones(left.shape))])
-        return nodal.ravel(), pushes
+def _plane(values: np.ndarray) -> np.ndarray:
+    """(x, y) pairs, flat or in rows, as complex numbers."""
+    return np.ascontiguousarray(values, dtype=float).reshape(-1).view(complex)
 
 
 def law(discs: Discs, overlap: np.ndarray, closing: np.ndarray) -> np.ndarray:

@@ -109,7 +109,7 @@ def independent(interface: str, case: str) -> np.ndarray:
     """Displacement (k, 21) [m] of the upper face, its error of order 2 removed."""
     contact = row_below(BEAM, interface, SPRINGS, radius=RADIUS, stiffness=K_N)
     seen = []
-    for step in (4e-6, 2e-6):
+    for step in (8e-6, 4e-6):
         moved = motion(
             BEAM,
             density=DENSITY,

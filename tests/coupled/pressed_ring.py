@@ -78,7 +78,7 @@ def pressed(way: Way, window: float, **structure: object) -> Model:
 def independent(interface: str) -> np.ndarray:
     """Displacement (k, 30, 2) [m] of the outer nodes, its error of order 2 removed."""
     seen = []
-    for step in (4e-6, 2e-6):
+    for step in (8e-6, 4e-6):
         press = discs(GLUED_RADIUS if interface == "glued" else 0.0)
         if interface == "glued":
             contact = OnGluedDiscs(BODY, press, CIRCLE[TOUCHED], CIRCLE[TOUCHED + 1], np.full(4, 0.5), GLUED_RADIUS)

@@ -214,6 +214,14 @@ def band(axes: plt.Axes, x: np.ndarray, seen: list[np.ndarray], label: str) -> N
     axes.errorbar(x, mean, yerr=np.maximum(spread, 0.0), marker="o", capsize=3, label=label)
 
 
+def summary(values: np.ndarray) -> tuple[float, float, float]:
+    return values.mean(), values.min(), values.max()
+
+
+def digits(value: float) -> str:
+    return f"{round(value, 3) + 0.0:.3f}"  # no -0.000
+
+
 def write_page(found: Coefficients, picture: str) -> None:
     faces = list(dict.fromkeys(face for face, _ in found))
     head = ["face of the plate", "steepest slope", *(f"mu = {friction:g}" for friction in FRICTIONS)]
@@ -222,7 +230,7 @@ def write_page(found: Coefficients, picture: str) -> None:
         cells = [face.name, f"{face.steepest:.2f}"]
         for friction in FRICTIONS:
             values = found.get((face, friction))
-            cells.append("" if values is None else f"{values.mean():.3f} ({values.min():.3f} to {values.max():.3f})")
+            cells.append("" if values is None else "{} ({} to {})".format(*map(digits, summary(values))))
         lines.append(f"| {' | '.join(cells)} |")
     numbers = {"count": COUNT, "seeds": len(SEEDS), "load": LOAD, "speed": SPEED, "grains": BED_FRICTION}
     way = SPEED * (SLIDE - SKIP) / DIAMETER
@@ -244,6 +252,11 @@ steepest slope is that of one grain of the mean size d that rides over two of th
 ![{picture}]({picture})
 
 {table}
+
+Facets show mu itself, to the digits given, as long as the bed bears it. Glued grains add to it, the less the closer
+they stand, and far less than the slope of one grain on two of them: many grains at once hardly let the plate rise, and
+only what the bed takes up for good is drag. Above a third or so the bed fails before the plate slides; then the face
+no longer matters, and the beds differ more than the faces.
 """
 
 
@@ -251,3 +264,8 @@ steepest slope is that of one grain of the mean size d that rides over two of th
 def test_roughness_of_glued_grains() -> None:
     found = measure()
     write_page(found, draw(found))
+    smooth = Face(None)
+    assert np.abs(found[smooth, 0.0]).max() < 1e-12
+    assert found[smooth, 0.1] == pytest.approx(0.1, abs=1e-3)  # but for moments at which a grain sticks
+    rough = [found[Face(spacing * DIAMETER), 0.0].mean() for spacing in SPACINGS]
+    assert np.all(np.diff(rough) < 0.0) and rough[-1] > 0.0

@@ -142,7 +142,9 @@ def blows(axes: Axes) -> str:
         ]
     axes.set(xlabel="duration of the blow / period", ylabel="first mode / by the impulse", ylim=(0.0, 1.05))
     axes.legend(fontsize=7)
-    head = "| interface | duration over period | impulse over 2 m v | mode, over impulse | half a sine | over Duhamel's |"
+    head = (
+        "| interface | duration over period | impulse over 2 m v | mode, over impulse | half a sine | over Duhamel's |"
+    )
     return "\n".join([head, "|---|---|---|---|---|---|", *rows])
 
 
