@@ -35,5 +35,8 @@ def finite(name: str, value: float, unit: str) -> None:
 
 def schedule(value: object) -> None:
     """Refuse what does not say how strong a load is at a time."""
-    if not callable(getattr(value, "factor", None)):
-        raise StructureError(f"schedule = {value!r} is not known: use a Constant, a Ramp, a Sine or a Table")
+    if not all(hasattr(value, name) for name in ("factor", "constant_from", "largest")):
+        raise StructureError(
+            f"schedule = {value!r} is not known: use a Constant, a Ramp, a Sine, a Table, or what has factor(time), "
+            "constant_from and largest"
+        )

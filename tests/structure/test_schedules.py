@@ -34,6 +34,11 @@ def test_sine_has_its_mean_amplitude_and_period() -> None:
     assert np.abs(one_period).max() <= sine.largest == 1.3
 
 
+class OnlyFactor:
+    def factor(self, time: float) -> float:
+        return time
+
+
 @pytest.mark.parametrize(
     ("build", "words"),
     [
@@ -45,6 +50,7 @@ def test_sine_has_its_mean_amplitude_and_period() -> None:
         (lambda: Table(times=(0.0, 2.0, 2.0), factors=(1.0, 0.0, 1.0)), "2.0 s after 2.0 s"),
         (lambda: Table(times=(0.0, 1.0), factors=(1.0, math.nan)), "must be finite"),
         (lambda: BodyForce(acceleration=(0.0, 1.0), schedule=0.5), "schedule = 0.5 is not known"),  # type: ignore
+        (lambda: BodyForce(acceleration=(0.0, 1.0), schedule=OnlyFactor()), "factor(time), constant_from and largest"),
     ],
 )
 def test_bad_schedules(build, words: str) -> None:
