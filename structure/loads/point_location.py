@@ -47,19 +47,19 @@ def _in_cell(mesh: StructureMesh, place: NDArray[np.float64]) -> Shares | None:
     near = np.all((low - slack <= place) & (place <= high + slack), axis=1)
     kind, found, least = KINDS[mesh.cells.shape[1]], None, INSIDE
     for cell in mesh.cells[near]:
-        at = _reference_place(kind, mesh.points[cell], place)
+        at = _reference_place(kind, mesh.points[cell] - place)
         if at is not None and (outside := _outside_by(kind, at)) <= least:
             found, least = (cell, shapes_at(kind, at[None])[0][0]), outside
     return found
 
 
-def _reference_place(kind: Kind, nodes: NDArray[np.float64], place: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Newton's solution of ``sum N_a(at) x_a = place``; None where there is none near the cell."""
+def _reference_place(kind: Kind, nodes: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Newton's solution of ``sum N_a(at) x_a = 0``, x_a seen from the place; None where there is none near the cell."""
     at = np.mean(kind.nodes, axis=0)
     size = np.ptp(nodes, axis=0).max()
     for _ in range(SWEEPS):
         values, slopes = shapes_at(kind, at[None])
-        gap = place - values[0] @ nodes
+        gap = -values[0] @ nodes
         if np.abs(gap).max() <= 1e-14 * size:
             break
         jacobian = nodes.T @ slopes[0]

@@ -100,6 +100,15 @@ def test_a_point_on_a_straight_side_may_miss_it_by_round_off() -> None:
     np.testing.assert_allclose(shares @ mesh.points[nodes], [0.67, 0.8], atol=1e-11)
 
 
+@pytest.mark.parametrize(("cell", "order"), KINDS)
+def test_a_point_in_a_small_body_far_from_the_origin(cell: str, order: int) -> None:
+    """Millimetres at a distance of kilometres: coordinates have 1e-13 m, far more than 1e-14 of a cell."""
+    mesh = meshes.beam(length=1e-3, height=3e-4, along=6, across=2, origin=(1e3, 1e3), cell=cell, order=order)
+    for x, y in np.random.default_rng(2).uniform(0.05, 0.95, (20, 2)) * [1e-3, 3e-4]:
+        nodes, shares = shares_at(mesh, (1e3 + x, 1e3 + y))
+        np.testing.assert_allclose(shares @ (mesh.points[nodes] - 1e3), [x, y], atol=1e-12)
+
+
 def test_a_point_between_cells_belongs_to_one_of_them(soft: PlaneStrain) -> None:
     """Where cells share a side, one of them alone takes the point: the force is not doubled."""
     mesh = meshes.beam(length=1.0, height=0.1, along=10, across=2)
