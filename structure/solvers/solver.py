@@ -7,7 +7,8 @@ with the prefix ``leito_`` for steps and masses, ``leito_statics_`` for statics,
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,16 +136,23 @@ def _stiffness_over_mass(matrix: PETSc.Mat, mass: PETSc.Mat) -> float:
 
 def _set_up(solver: PETSc.KSP) -> None:
     """Take up the options and do all work that does not depend on the right-hand side."""
-    try:
+    with set_up_told(solver.getOperators()[0].getSize()[0], solver.getOptionsPrefix()):
         solver.setFromOptions()
         _iterate_if_inexact(solver)
         solver.setErrorIfNotConverged(True)
         solver.setUp()
         solver.getPC().setUp()
+
+
+@contextmanager
+def set_up_told(unknowns: int, prefix: str) -> Iterator[None]:
+    """Say in a sentence that PETSc cannot set up a solver, for which a user's options are the usual cause."""
+    try:
+        yield
     except PETSc.Error as error:
         raise StructureError(
-            f"PETSc cannot set up a solver for {solver.getOperators()[0].getSize()[0]} unknowns "
-            f"({_last_line(error)}): change the options -{solver.getOptionsPrefix()}..., or the mesh"
+            f"PETSc cannot set up a solver for {unknowns} unknowns ({_last_line(error)}): "
+            f"change the options -{prefix}..., or the mesh"
         ) from None
 
 

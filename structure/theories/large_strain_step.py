@@ -17,7 +17,7 @@ from structure import compat
 from structure.discrete import DiscreteBody
 from structure.material import PlaneStrain, Rayleigh
 from structure.nodes import fill
-from structure.solvers.solver import configure
+from structure.solvers.solver import PREFIX, configure, set_up_told
 from structure.theories.conserving import ConservingStepper
 from structure.theories.frame import Pose
 
@@ -81,8 +81,8 @@ class LargeStrainStepper(ConservingStepper):
         solver.setTolerances(max_it=STEPS)
         solver.setConvergenceTest(self._converged)
         configure(solver.getKSP(), self._mass)
-        solver.setOptionsPrefix("leito_")
-        with _full_steps():
+        solver.setOptionsPrefix(PREFIX)
+        with _full_steps(), set_up_told(self._mass.getSize()[0], PREFIX):
             solver.setFromOptions()
         self._solver = solver
 
@@ -153,7 +153,7 @@ class LargeStrainStepper(ConservingStepper):
 @contextmanager
 def _full_steps() -> Iterator[None]:
     """Newton steps are not shortened, unless the options ask for it: petsc4py can say so by an option only."""
-    options, name = PETSc.Options("leito_"), "snes_linesearch_type"
+    options, name = PETSc.Options(PREFIX), "snes_linesearch_type"
     if options.hasName(name):
         yield
         return

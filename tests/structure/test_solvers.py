@@ -105,6 +105,24 @@ def test_bad_options_are_refused(text: str, words: str) -> None:
     assert words in str(refusal.value)
 
 
+@pytest.mark.parametrize(
+    ("text", "theory"),
+    [
+        ("-leito_ksp_type cgg", "linear"),
+        ("-leito_pc_type luu", "corotational"),
+        ("-leito_snes_type newtonls2", "large_strain"),
+        ("-leito_snes_linesearch_type bb", "large_strain"),
+    ],
+)
+def test_values_that_petsc_does_not_know_are_refused(text: str, theory: str) -> None:
+    set_solver_options(text)
+    beam = meshes.beam(length=4.0, height=1.0, along=8)
+    with pytest.raises(StructureError, match="change the options -leito_") as refusal:
+        ElasticStructure(beam, material=ALUMINIUM, time_step=1e-5, theory=theory)
+    assert text.split()[1] in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
 def test_options_of_no_use_are_told() -> None:
     """A direct solver does not ask for a tolerance."""
     set_solver_options("-leito_ksp_rtol 1e-11 -leito_kps_type cg -leito_pc_factor_shift_type none -leito_nothing")
