@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
@@ -15,6 +17,7 @@ from structure.solvers.solver import factorise_for_few
 
 LARGEST_IMBALANCE = 1e-9
 SWEEPS = 100
+SMALL = 1e-13  # of the displacement: a sweep that moves no more is the last
 
 
 def balanced_displacement(
@@ -22,13 +25,13 @@ def balanced_displacement(
 ) -> NDArray[np.float64]:
     """Solution (n, 2) [m] of ``K u = f`` with every load at full strength, orthogonal to the rigid motions.
 
-    K is singular: ``(K + s M) du = f - K u`` is repeated until nothing is left; each sweep
-    multiplies the error in a mode omega by ``s/(omega^2 + s)``.
+    K is singular, ``K + s M`` is not: conjugate gradients with its inverse, kept free of rigid motion. Modes far
+    above ``omega^2 = s`` take one sweep together; a slender body has a few below, which take one or two each.
 
     Raises
     ------
     StructureError
-        The loads have a resultant force or moment.
+        The loads have a resultant force or moment, or the sweeps do not converge.
     """
     force, resultant = loads.at_full_strength()
     rigid = rigid_motions(body)
@@ -37,18 +40,26 @@ def balanced_displacement(
     shifted = stiffness.copy()
     shifted.axpy(shift, body.mass_matrix, structure=PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
     solve = factorise_for_few(shifted)
-    right, solution = stiffness.createVecs()
-    residual, step = stiffness.createVecs()
-    right.array[:] = force
+    residual, solution = stiffness.createVecs()
+    step, ahead, image = (solution.duplicate() for _ in range(3))
+    residual.array[:] = force
+    before = math.inf
     for _ in range(SWEEPS):
-        stiffness.mult(solution, residual)
-        residual.aypx(-1.0, right)
         solve(residual, step)
-        free = step.array - rigid.T @ body.comm.allreduce(rigid @ body.weigh(step.array))
-        solution.array[:] += free
-        if body.total(float(free @ free)) <= 1e-26 * solution.dot(solution):
-            break
-    return body.nodes.gather(solution.array)
+        step.array[:] -= rigid.T @ body.comm.allreduce(rigid @ body.weigh(step.array))
+        gain = residual.dot(step)
+        ahead.aypx(gain / before, step)
+        stiffness.mult(ahead, image)
+        length = gain / ahead.dot(image) if gain else 0.0
+        solution.axpy(length, ahead)
+        residual.axpy(-length, image)
+        if length * ahead.norm() <= SMALL * solution.norm():
+            return body.nodes.gather(solution.array)
+        before = gain
+    raise StructureError(
+        f"the position of rest is not found in {SWEEPS} sweeps: the body is too slender for the digits of its stiffness "
+        "(some 1 : 3000); make it thicker with a smaller E"
+    )
 
 
 def _check_balance(
