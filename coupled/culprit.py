@@ -7,6 +7,7 @@ import numpy as np
 from coupled.balance import Balance
 from coupled.glued import BODY
 from coupled.model import Model
+from particles import ContactLook
 from particles.spots import deepest_touch
 
 
@@ -55,12 +56,10 @@ def fastest_line(balance: Balance, since: Balance) -> str:
     return f"{name} changed by {change[name]:+.3g} J/m"
 
 
-def fastest_grain(model: Model) -> int | None:
-    """Place of the fastest free grain that touches something, or of the fastest; None without free grains."""
-    grains, contacts = model.particles.grains, model.particles.look().contacts
-    if grains.n_free == 0:
-        return None
+def fastest_grain(model: Model, look: ContactLook) -> int:
+    """Place of the fastest free grain that touches something, or of the fastest; there must be a free one."""
+    grains = model.particles.grains
     free = slice(grains.n_free)
     speed = np.hypot(grains.vx[free], grains.vy[free])
-    touching = np.where(contacts[free] > 0, speed, -1.0)
+    touching = np.where(look.contacts[free] > 0, speed, -1.0)
     return int(np.argmax(touching if touching.max() >= 0.0 else speed))

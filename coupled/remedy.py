@@ -5,21 +5,20 @@ from __future__ import annotations
 import math
 
 from coupled.build import Built, stable_ratio
-from coupled.step import limits_of
+from coupled.step import StepLimits, limits_of
 from coupled.watchdog import Sign
 
 SHARE_OF_LIMIT = 0.8  # of the limit of the contacts, to be on the safe side of those to come
 WANTED_OVERLAP = 0.1  # of the smaller radius
 
 
-def smaller_step(built: Built) -> float:
+def smaller_step(built: Built, limits: StepLimits | None) -> float:
     """A whole fraction [s] of the time step, at most half of it, within the limits of any packing and of the coupling.
 
     A whole one, so that the run can be taken up with it. Of any packing, as that of the present
-    contacts falls where more are made. On rank 0.
+    contacts falls where more are made. `limits` are those of the grains, if there are any.
     """
     step, wanted = built.scene.time.step, 0.5 * built.scene.time.step
-    limits = limits_of(built.model)
     if limits is not None and not limits.of_packing <= 1.0:
         wanted = min(wanted, SHARE_OF_LIMIT * limits.packing)
     if built.scene.interface is not None and built.stiffness_ratio > 0.0:
@@ -28,7 +27,7 @@ def smaller_step(built: Built) -> float:
 
 
 def remedy(built: Built, sign: Sign) -> str:
-    """What to change, in words that follow "to go on"; the model stands before the sign. On rank 0."""
+    """What to change, in words that follow "to change"; the model stands before the sign. On rank 0."""
     limits, interface = limits_of(built.model), built.scene.interface
     stable = limits is None or limits.of_network <= 1.0
     if sign.remedy == "contact" and stable:
@@ -38,7 +37,7 @@ def remedy(built: Built, sign: Sign) -> str:
             f"make the contact about {stiffer} times as stiff, so that grains overlap by {WANTED_OVERLAP:g} of a "
             f"radius, with a time.step {math.sqrt(stiffer):.2g} times shorter"
         )
-    said = f"take time.step = {smaller_step(built):.6g} s"
+    said = f"take time.step = {smaller_step(built, limits):.6g} s"
     if not stable:
         said += f" (the limit of the present contacts is {limits.network.step:.3g} s)"
     if interface is None or sign.remedy not in ("exchange", "structure"):

@@ -91,8 +91,7 @@ def _too_fast(model: Model, seen: Glance) -> Sign | None:
     """A grain that goes on after half its radius in a step has contacts that are not resolved."""
     if seen.look is None or not model.particles.grains.n_free:
         return None
-    place = culprit.fastest_grain(model)
-    grains = model.particles.grains
+    grains, place = model.particles.grains, culprit.fastest_grain(model, seen.look)
     share = float(np.hypot(grains.vx[place], grains.vy[place])) * model.particles.time_step / grains.radius[place]
     if seen.look.contacts[place] == 0 or share <= FARTHEST_STEP:
         return None
@@ -112,7 +111,7 @@ def _energy_made(model: Model, seen: Glance, since: Glance) -> Sign | None:
     stored = sum(abs(value) for value in now.entries.values())
     if not made > max(ENERGY_MADE * turned, OF_PRESENT * (moving + elastic), NOISE * stored):
         return None
-    return _energy_sign(model, made, made / turned, now, then)
+    return _energy_sign(model, made, made / turned, seen, then)
 
 
 def _energy_made_in_all(model: Model, seen: Glance) -> Sign | None:
@@ -121,11 +120,12 @@ def _energy_made_in_all(model: Model, seen: Glance) -> Sign | None:
     stored = sum(abs(value) for value in balance.entries.values())
     if not balance.error > max(ENERGY_MADE * balance.throughput, NOISE * stored):
         return None
-    return _energy_sign(model, balance.error, balance.relative_error, balance, None)
+    return _energy_sign(model, balance.error, balance.relative_error, seen, None)
 
 
-def _energy_sign(model: Model, made: float, share: float, now: Balance, then: Balance | None) -> Sign:
+def _energy_sign(model: Model, made: float, share: float, seen: Glance, then: Balance | None) -> Sign:
     """Where energy came from nothing: at the interface if its two works differ by most of it, else among the grains."""
+    now = seen.balance
     text = f"{made:.3g} J/m have come from nothing, {share:.0%} of the energy turned over"
     if then is not None:
         text += f" ({culprit.fastest_line(now, then)})"
@@ -134,7 +134,7 @@ def _energy_sign(model: Model, made: float, share: float, now: Balance, then: Ba
         return Sign(f"{text}, at the interface; liveliest is {culprit.liveliest_node(model)}", "exchange")
     if model.particles is None or not model.particles.grains.n_free:
         return Sign(f"{text}; liveliest is {culprit.liveliest_node(model)}", "structure")
-    return Sign(f"{text}; fastest is {culprit.touch_of(model, culprit.fastest_grain(model))}", "step")
+    return Sign(f"{text}; fastest is {culprit.touch_of(model, culprit.fastest_grain(model, seen.look))}", "step")
 
 
 def turning_grains(model: Model) -> bool:
