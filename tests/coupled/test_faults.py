@@ -162,6 +162,8 @@ def test_an_exchange_above_its_limit_names_the_interface(tmp_path: Path) -> None
     assert "r = 2.08 of the coupling should be below 2" in said
     advised = re.search(r"take time.step = ([\d.e-]+) s", said)[1]
     run_scene(load_scene("winkler_beam", [*BEAM, f"time.step={advised}"]), out=tmp_path / "sound", progress=False)
+    sets = [*BEAM, "time.step=1e-4", "interface.exchange=iterated", "time.duration=0.1"]  # which has no such limit
+    run_scene(load_scene("winkler_beam", sets), out=tmp_path / "run", resume=True, threads=1, progress=False)
 
 
 def test_a_step_that_cannot_be_taken_ends_the_run_like_a_sign(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

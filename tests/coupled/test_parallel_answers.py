@@ -12,7 +12,9 @@ from mpi4py import MPI
 from coupled.build import build
 from coupled.scene import Scene
 
-WAYS = {"glued": {"per_facet": 2}, "facets": {"kind": "facets"}}
+WAYS = {
+    "glued": {"per_facet": 2}, "facets": {"kind": "facets"}, "iterated": {"kind": "facets", "exchange": "iterated"}
+}
 TABLES = {
     "title": "a tube is driven into grains that fall",
     "gravity": [0.0, -9.81],
