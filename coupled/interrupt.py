@@ -1,4 +1,4 @@
-"""Ctrl-C as a wish that is met at the next event."""
+"""Ctrl-C, or the end of a job's time, as a wish that is met at the next event."""
 
 from __future__ import annotations
 
@@ -6,18 +6,21 @@ import signal
 from types import FrameType
 from typing import Any
 
+WISHES = (signal.SIGINT, signal.SIGTERM)  # the second is what `kill` and batch systems send first
+
 
 class Stop:
-    """Ctrl-C asks for a stop at the next event; a second one stops at once."""
+    """Ctrl-C and SIGTERM ask for a stop at the next event; a second one stops at once."""
 
     asked = False
 
     def __enter__(self) -> Stop:
-        self._before = signal.signal(signal.SIGINT, self._ask)
+        self._before = {wish: signal.signal(wish, self._ask) for wish in WISHES}
         return self
 
     def __exit__(self, *error: Any) -> None:
-        signal.signal(signal.SIGINT, self._before)
+        for wish, before in self._before.items():
+            signal.signal(wish, before)
 
     def _ask(self, number: int, frame: FrameType | None) -> None:
         if self.asked:

@@ -56,16 +56,20 @@ def _wait_for(path: Path, process: subprocess.Popen[str]) -> None:
         time.sleep(0.005)
 
 
-def test_ctrl_c_leaves_a_checkpoint_and_says_how_to_go_on(place: Path, scene: Scene, whole: Path) -> None:
-    process = _start(place, "stopped")
-    _wait_for(place / "runs" / "stopped" / "checkpoint.h5", process)
-    process.send_signal(signal.SIGINT)
+@pytest.mark.parametrize("wish", [signal.SIGINT, signal.SIGTERM])
+def test_a_stop_leaves_a_checkpoint_and_says_how_to_go_on(
+    wish: signal.Signals, place: Path, scene: Scene, whole: Path
+) -> None:
+    out = place / "runs" / wish.name
+    process = _start(place, wish.name)
+    _wait_for(out / "checkpoint.h5", process)
+    process.send_signal(wish)
     _, said = process.communicate(timeout=120)
     assert process.returncode == 130, said
     assert "stopped at t = " in said and "--resume" in said and "Traceback" not in said
-    stopped, _ = checkpoint.load(place / "runs" / "stopped" / "checkpoint.h5")
+    stopped, _ = checkpoint.load(out / "checkpoint.h5")
     assert 0 < int(stopped["model.steps_done"]) < 8000
-    assert_same_run(whole, run_scene(scene, out=place / "runs" / "stopped", resume=True, threads=1, progress=False))
+    assert_same_run(whole, run_scene(scene, out=out, resume=True, threads=1, progress=False))
 
 
 def test_two_threads_give_the_bits_of_one(place: Path, scene: Scene, whole: Path) -> None:
