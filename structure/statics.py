@@ -57,8 +57,8 @@ def balanced_displacement(
             return body.nodes.gather(solution.array)
         before = gain
     raise StructureError(
-        f"the position of rest is not found in {SWEEPS} sweeps: the body is too slender for the digits of its stiffness "
-        "(some 1 : 3000); make it thicker with a smaller E"
+        f"the position of rest is not found in {SWEEPS} sweeps: the body is too slender for the digits of its "
+        "stiffness (some 1 : 3000); make it thicker with a smaller E"
     )
 
 
