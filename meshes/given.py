@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -53,8 +54,7 @@ def from_arrays(
         flat or overlapping; several pieces; a boundary that touches or crosses itself; a named edge
         that is not on the boundary or has a name already.
     """
-    points = np.array(points, dtype=float)
-    cells = np.array(cells)
+    points, cells = _table("points", points, float), _table("cells", cells, None)
     if not np.issubdtype(cells.dtype, np.integer):
         raise MeshError(f"cells of type {cells.dtype} must be integers, the numbers of points from 0")
     kind = kind_of(points, cells)
@@ -98,6 +98,15 @@ def from_gmsh(path: str | Path, *, comm: MPI.Intracomm = MPI.COMM_WORLD) -> Stru
     return from_arrays(points, cells, boundaries=boundaries, comm=comm)
 
 
+def _table(name: str, rows: ArrayLike, kind: type | None) -> NDArray[Any]:
+    try:
+        return np.array(rows, dtype=kind)
+    except ValueError:
+        raise MeshError(
+            f"{name} must be numbers in rows of one length: cells of one kind, edges of two nodes"
+        ) from None
+
+
 def _names(
     sides: NDArray[np.int64], outer: NDArray[np.bool_], boundaries: Mapping[str, ArrayLike]
 ) -> NDArray[np.object_]:
@@ -105,7 +114,9 @@ def _names(
     row = {frozenset(ends): number for number, ends in enumerate(sides[:, :2].tolist())}
     names = np.full(len(sides), OUTER, dtype=object)
     for name, given in boundaries.items():
-        edges = np.array(given)
+        if not isinstance(name, str):
+            raise MeshError(f"boundary {name!r} must have a name: give it a string")
+        edges = _table(f"boundary '{name}'", given, None)
         if edges.ndim != 2 or edges.shape[1] != 2 or not np.issubdtype(edges.dtype, np.integer) or not len(edges):
             raise MeshError(f"boundary '{name}' of shape {edges.shape} must be (f, 2) end nodes of edges, at least one")
         numbers = [row.get(frozenset(edge)) for edge in edges.tolist()]
@@ -114,7 +125,7 @@ def _names(
                 raise MeshError(
                     f"boundary '{name}' has the edge {tuple(edge)}, which is no side of a cell on the boundary"
                 )
-            if names[number] not in (OUTER, name):
+            if name != OUTER and names[number] not in (OUTER, name):
                 raise MeshError(f"the edge {tuple(edge)} is on '{names[number]}' and on '{name}': give it one name")
         if name != OUTER:
             names[numbers] = name

@@ -220,6 +220,20 @@ def test_boundary_that_touches_itself_is_refused() -> None:
         meshes.from_arrays(points, cells)
 
 
+def test_cells_of_several_kinds_are_refused() -> None:
+    points = [*SQUARE[0], [2.0, 0.5]]
+    with pytest.raises(meshes.MeshError, match="cells must be numbers in rows of one length"):
+        meshes.from_arrays(points, [[0, 1, 2, 3], [1, 4, 2]])
+
+
+@pytest.mark.parametrize("names", [("outer", "top"), ("top", "outer")])
+def test_the_whole_outer_loop_may_be_named_beside_its_pieces(names: tuple[str, str]) -> None:
+    edges = {"outer": [[0, 1], [1, 2], [2, 3], [3, 0]], "top": [[2, 3]]}
+    mesh = meshes.from_arrays(*SQUARE, boundaries={name: edges[name] for name in names})
+    assert tagged_length(mesh, "outer") == pytest.approx(4.0)
+    assert tagged_length(mesh, "top") == pytest.approx(1.0)
+
+
 @pytest.mark.parametrize(
     ("boundaries", "words"),
     [
@@ -229,6 +243,8 @@ def test_boundary_that_touches_itself_is_refused() -> None:
         ({"top": []}, "boundary 'top' of shape (0,)"),
         ({"top": [[2.0, 3.0]]}, "boundary 'top'"),
         ({"outer": [[2, 3]]}, "not the whole outer loop of 4"),
+        ({"top": [[2, 3], [3]]}, "boundary 'top' must be numbers in rows of one length"),
+        ({3: [[2, 3]]}, "boundary 3 must have a name"),
     ],
 )
 def test_boundaries_that_do_not_fit_are_refused(boundaries: dict, words: str) -> None:
