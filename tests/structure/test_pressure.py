@@ -6,6 +6,7 @@ import meshes
 import numpy as np
 import pytest
 from held import moved
+from moving import cross, turned
 from scipy.integrate import solve_ivp
 from structure import ElasticStructure, FreeRigid, PlaneStrain, Pressure, Ramp, StructureError
 from structure.discrete import DiscreteBody
@@ -15,17 +16,8 @@ from structure.loads.pressure import PressedBoundary
 KINDS = [("quadrilateral", 1), ("triangle", 1), ("quadrilateral", 2), ("triangle", 2)]
 
 
-def turned(places: np.ndarray, angle: float) -> np.ndarray:
-    c, s = math.cos(angle), math.sin(angle)
-    return places @ np.array([[c, s], [-s, c]])
-
-
 def pressed(mesh: meshes.StructureMesh, boundary: str, pressure: float = 7.0) -> PressedBoundary:
     return PressedBoundary(DiscreteBody(mesh, 1.0), Pressure(boundary=boundary, pressure=pressure))
-
-
-def moment(places: np.ndarray, force: np.ndarray) -> float:
-    return float(places[:, 0] @ force[:, 1] - places[:, 1] @ force[:, 0])
 
 
 @pytest.mark.parametrize(("cell", "order"), KINDS)
@@ -39,7 +31,7 @@ def test_a_closed_boundary_of_any_shape_is_in_balance(cell: str, order: int, bou
     scale = np.abs(force).sum()
     eps = np.finfo(float).eps
     assert np.abs(force.sum(axis=0)).max() < 10 * eps * scale
-    assert abs(moment(mesh.points[load.nodes] + displacement, force)) < 100 * eps * scale
+    assert abs(cross(mesh.points[load.nodes] + displacement, force)) < 100 * eps * scale
 
 
 @pytest.mark.parametrize(("cell", "order"), KINDS)
