@@ -53,7 +53,7 @@ def balanced_displacement(
         length = gain / ahead.dot(image) if gain else 0.0
         solution.axpy(length, ahead)
         residual.axpy(-length, image)
-        if length * ahead.norm() <= SMALL * solution.norm():
+        if abs(length) * ahead.norm() <= SMALL * solution.norm():
             return body.nodes.gather(solution.array)
         before = gain
     raise StructureError(
