@@ -8,7 +8,7 @@ from typing import Any
 
 from coupled.scene.refusal import refusal
 
-COLUMNS = "two columns, time [s] and factor [-]"
+COLUMNS = "two columns, time [s] and factor [-], with a comma between them"
 
 
 def read_schedules(scene: dict[str, Any], folder: Path) -> None:
@@ -40,7 +40,7 @@ def read_schedules(scene: dict[str, Any], folder: Path) -> None:
 def _read(key: str, name: str, folder: Path) -> tuple[list[float], list[float]]:
     try:
         lines = (folder / name).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it is not text in UTF-8"
         raise refusal(key, name, f"cannot be read ({reason}); give a CSV file beside the scene") from None
     rows: list[tuple[float, float]] = []

@@ -146,7 +146,7 @@ def test_bad_loads_are_refused(name: str, tmp_path: Path) -> None:
         ("0,0\n2,1\n1.5,1\n", ("1.5 s in line 3 after 2 s",)),
         ("0\n1\n", ("1 column in line 1", "two columns")),
         ("0,0,0\n1,1,1\n", ("3 columns in line 1",)),
-        ("0;0\n1;1\n", ("1 column in line 1",)),
+        ("0;0\n1;1\n", ("1 column in line 1", "with a comma between them")),
         ("time,factor\n0,1\n", ("1 row of numbers", "at least 2")),
         ("", ("0 rows of numbers",)),
         (b"\xff\xfe0,1", ("cannot be read", "UTF-8")),
