@@ -202,8 +202,8 @@ def draw(found: Coefficients) -> str:
     right.plot(FRICTIONS, FRICTIONS, "k:", label="Coulomb on a smooth plate")
     right.set(xlabel="mu between plate and grains", ylabel="drag / load")
     for axes in (left, right):
-        axes.legend(fontsize=8)
-        axes.set_ylim(bottom=0.0)
+        axes.legend(fontsize=8, ncols=2, loc="upper center")
+        axes.set_ylim(0.0, 0.75)
         axes.grid(alpha=0.3)
     figure.savefig(FOLDER / "roughness.png", dpi=120)
     plt.close(figure)
@@ -259,9 +259,9 @@ steepest slope is that of one grain of the mean size d that rides over two of th
 
 Facets show mu itself, to the digits given, as long as the bed bears it. Glued grains add to it, the less the closer
 they stand, and far less than the slope of one grain on two of them: many grains at once hardly let the plate rise, and
-only what the bed takes up for good is drag. Of widely spaced ones this does not depend on the speed; the little that
-closely spaced ones add falls with it, as it is the work of dashpots. Above a third or so the bed fails before the plate
-slides; then the face no longer matters, and the beds differ more than the faces.
+only what the bed takes up for good is drag. At half the speed they add less, about half of it 0.25 and 0.5 d apart: a
+part is the work of dashpots. Above a third or so the bed fails before the plate slides; then the face no longer
+matters, and the beds differ more than the faces.
 """
 
 

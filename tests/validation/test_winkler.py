@@ -93,7 +93,7 @@ def error_table(found: Errors) -> str:
 def draw_errors(axes: Axes, found: Errors) -> None:
     for (what, way), values in found.items():
         if what == CASES[2].what:
-            interface, exchange = way.split("-")
+            interface, _ = way.split("-", 1)
             axes.loglog(WINDOWS, values, marker=MARKS[interface], ls="-" if interface == "glued" else "--", label=way)
     axes.set(xlabel="step of the structure [s]", ylabel="error of the displacement [-]", title=CASES[2].what)
     axes.legend(fontsize=7)
@@ -202,7 +202,8 @@ geometry, and closed forms. The default tests hold the same numbers to their ord
 ## Convergence in the step of the structure
 
 Root mean square of the error of the displacement of a whole face over the whole motion, over that of the
-displacement. "substeps" is the predicted exchange with four grain steps per step of the structure.
+displacement. "substeps" is the predicted exchange with four grain steps per step of the structure; "iterated-substeps"
+is the iterated one with four.
 
 {errors}
 
@@ -211,8 +212,8 @@ The fall begins with a jump of the speeds, which excites modes beyond these step
 ## A load that runs along a beam
 
 Deflection under the load over that of the same load at rest. Euler and Bernoulli's infinite beam on a continuous
-foundation with the springs' stiffness and dashpots; the beam of cells gives way to shear, which lowers the critical
-speed.
+foundation with the springs' stiffness and dashpots. It knows neither shear, which lowers the critical speed of the beam
+of cells, nor what the load leaves when it begins, which has less time to decay the faster it comes.
 
 {running}
 
@@ -242,3 +243,4 @@ def test_family_on_springs() -> None:
     )
     figure.savefig(DOCS / "winkler.png", dpi=120)
     (DOCS / "winkler.md").write_text(text)
+    assert all(values[-1] < 2e-4 for (_, way), values in found.items() if not way.endswith("lagged"))
