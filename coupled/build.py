@@ -21,7 +21,7 @@ from coupled.glued import BODY, GluedGrains
 from coupled.interface import Interface, stiffness_ratio
 from coupled.iterated import Iteration
 from coupled.laws import contact_law, interface_spring
-from coupled.loads import load_of
+from coupled.loads import loads_of
 from coupled.model import Model
 from coupled.scene import Beam, RowUnder, Scene, SettledGrains
 from coupled.scene.materials import GRAINS, STRUCTURE, materials
@@ -69,8 +69,9 @@ def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI
     free = _free_grains(scene, bed) if comm.rank == 0 else None
     body, interface = None, None
     if scene.structure is not None:
-        mesh = _mesh(scene, comm, _placement(scene, free, comm))
-        body = _structure(scene, mesh)
+        centroid = _placement(scene, free, comm)
+        mesh = _mesh(scene, comm, centroid)
+        body = _structure(scene, mesh, centroid)
         if scene.interface is not None:
             interface = _interface(scene, mesh)
     system = None
@@ -161,12 +162,12 @@ def _smallest_diameter(scene: Scene) -> float | None:
     return 2.0 * min(radii) if radii else None
 
 
-def _structure(scene: Scene, mesh: meshes.StructureMesh) -> fem.Structure:
+def _structure(scene: Scene, mesh: meshes.StructureMesh, centroid: tuple[float, float]) -> fem.Structure:
     table = scene.structure
     step = scene.time.step * (1 if scene.interface is None else scene.interface.substeps)
     if table.kind == "rigid":
         return fem.PrescribedRigid(mesh, path=np.array(table.path.points), time_step=step)
-    loads = [load_of(load, mesh) for load in table.loads]
+    loads = loads_of(table.loads, mesh, centroid)
     if table.kind == "free_rigid":
         return fem.FreeRigid(mesh, density=table.density, time_step=step, loads=loads)
     body = fem.ElasticStructure(

@@ -7,16 +7,39 @@ import math
 import numpy as np
 
 import structure as fem
+from coupled.errors import LeitoError
 from coupled.scene import loads as tables
 from meshes import StructureMesh
 from structure.loads.load import Load
+from structure.loads.point_location import shares_at
 from structure.loads.schedules import Schedule
 
 FEWEST_STEPS = 20  # per period of a sine: Newmark then lengthens a period by 1 %
 
 
-def load_of(table: tables.Load, mesh: StructureMesh) -> Load:
-    """The load that a table describes; a point counts from the centroid of the shape."""
+def loads_of(given: tuple[tables.Load, ...], mesh: StructureMesh, centroid: tuple[float, float]) -> list[Load]:
+    """The loads that tables describe; a point counts from the centroid (x, y) [m] of the shape.
+
+    Raises
+    ------
+    LeitoError
+        A point load lies off the structure.
+    """
+    loads: list[Load] = []
+    for index, table in enumerate(given):
+        loads.append(load := _load(table, centroid))
+        if isinstance(load, fem.PointLoad):
+            try:
+                shares_at(mesh, load.point)
+            except fem.StructureError as error:
+                raise LeitoError(
+                    f"structure.loads.{index}.point = {list(table.point)} from the centroid, which is at "
+                    f"{centroid!r}: {error}"
+                ) from None
+    return loads
+
+
+def _load(table: tables.Load, centroid: tuple[float, float]) -> Load:
     schedule = _schedule(table.schedule)
     match table:
         case tables.BoundaryLoad():
@@ -27,8 +50,7 @@ def load_of(table: tables.Load, mesh: StructureMesh) -> Load:
             )
         case tables.BodyLoad():
             return fem.BodyForce(acceleration=table.acceleration, schedule=schedule)
-    low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
-    point = tuple(((low + high) / 2 + np.array(table.point)).tolist())
+    point = (centroid[0] + table.point[0], centroid[1] + table.point[1])
     return fem.PointLoad(point=point, force=table.force, schedule=schedule)
 
 

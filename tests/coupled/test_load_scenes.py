@@ -314,6 +314,18 @@ def test_points_count_from_the_centroid(tmp_path: Path) -> None:
     )
     body = build(load_scene(path)).model.structure
     assert isinstance(body, fem.ElasticStructure)
-    off = written(tmp_path, [{"kind": "point", "point": [0.0, 0.0], "force": [1.0, 0.0]}])
-    with pytest.raises(fem.StructureError, match="off the mesh"):
+    load = {"kind": "point", "point": [0.0, 0.0], "force": [1.0, 0.0]}
+    off = written(tmp_path, [load], **{"structure.placement": {"x": 3.0, "y": 2.0}})
+    with pytest.raises(LeitoError, match=r"structure.loads.0.point = \[0.0, 0.0\] from the centroid, .* off the mesh"):
         build(load_scene(off))
+
+
+def test_points_count_from_the_middle_of_a_tube_of_odd_facets(tmp_path: Path) -> None:
+    """Its box is not about its middle: a node below, a facet above. Force times arm is the moment."""
+    load = {"kind": "point", "point": [0.0, 0.045], "force": [1.0, 0.0]}
+    rigid = {"structure.kind": "free_rigid", "structure.youngs_modulus": GONE, "structure.poissons_ratio": GONE}
+    path = written(tmp_path, [load], **rigid, **{"structure.tube.around": 7})
+    body = build(load_scene(path)).model.structure
+    body.advance(np.zeros_like(body.polyline.points))
+    # at rest at first: half the square of the step
+    assert body.mean_rotation() == pytest.approx(-0.045 / body.inertia * body.time_step**2 / 2, rel=1e-6)
