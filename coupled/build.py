@@ -151,6 +151,7 @@ def _interface(scene: Scene, mesh: meshes.StructureMesh) -> Interface:
         boundaries=table.boundaries,
         diameter=table.diameter,
         mean_velocity=table.velocity == "mean",
+        couple=table.couple,
     )
 
 

@@ -43,6 +43,7 @@ class FacetInterface:
     """
 
     radius = math.inf
+    drops_moment = False
 
     def __init__(
         self, polyline: BoundaryPolyline, *, boundaries: Sequence[str] = ("outer",), closest: float | None = None
@@ -79,6 +80,9 @@ class FacetInterface:
     def impulses(self, particles: ParticleSystem) -> Pushed:
         impulse = particles.facets.impulse
         return Pushed(impulse, impulse.sum(axis=0))
+
+    def moment_dropped(self, particles: ParticleSystem) -> float:
+        return 0.0
 
     def contact_forces(self, particles: ParticleSystem) -> Floats:
         return particles.facets.force_by_grain(len(particles.grains))

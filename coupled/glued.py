@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coupled.couples import FacetCouples
 from coupled.errors import LeitoError
 from coupled.interface import Pushed, shares
 from meshes import BoundaryPolyline
@@ -23,8 +25,10 @@ class GluedGrains:
     One on every node of the boundaries asked for and ``per_facet - 1`` equally spaced between two
     nodes. A glued grain at the fraction s of a facet follows ``(1 - s) u_1 + s u_2``, and its
     force goes to the two nodes in the same shares: one sparse operator P and its transpose, so
-    that virtual work agrees by construction. The torque on a glued grain is dropped, as in the
-    source; with it goes the moment of the force about the facet's line (arm: the grain's radius).
+    that virtual work agrees by construction. The torque on a glued grain, which is the moment of the
+    force at the contact about the facet's line (arm: the grain's radius) and the rolling moment,
+    goes to the nodes as a couple, and the grain turns with its facet; without `couple` the torque is
+    dropped and the grain does not turn, as in the source.
 
     Parameters
     ----------
@@ -39,6 +43,8 @@ class GluedGrains:
     mean_velocity : bool
         Give each grain the mean velocity of its facet's nodes (G 2.3) instead of the
         interpolated one; a grain on a node between two facets takes that of the facet it begins.
+    couple : bool
+        Keep the torques (`FacetCouples`).
 
     Attributes
     ----------
@@ -63,20 +69,17 @@ class GluedGrains:
         boundaries: Sequence[str] = ("outer",),
         diameter: float | None = None,
         mean_velocity: bool = False,
+        couple: bool = True,
     ) -> None:
         self.polyline = polyline
         carrying = np.any([polyline.on(name) for name in boundaries], axis=0)
         facets = polyline.facets[carrying]
-        fraction = np.tile(np.arange(per_facet) / per_facet, len(facets))
-        first, second = np.repeat(facets, per_facet, axis=0).T
-        open_ends = np.setdiff1d(facets[:, 1], facets[:, 0])
-        closing = facets[np.isin(facets[:, 1], open_ends)]
-        first, second = np.append(first, closing[:, 0]), np.append(second, closing[:, 1])
-        fraction = np.append(fraction, np.ones(len(closing)))
-        self.operator = shares(first, second, fraction, len(polyline.points))
+        seats = _seats(facets, per_facet)
+        self.operator = shares(seats.first, seats.second, seats.fraction, len(polyline.points))
         self._transpose = self.operator.T.tocsr()
-        half = np.full(len(fraction), 0.5)
-        self._velocity = shares(first, second, half, len(polyline.points)) if mean_velocity else None
+        self._couples = FacetCouples(seats.on_nodes(len(polyline.points))[facets], seats.facet) if couple else None
+        half = np.full(len(seats.facet), 0.5)
+        self._velocity = shares(seats.first, seats.second, half, len(polyline.points)) if mean_velocity else None
         spacing = float(polyline.lengths()[carrying].min()) / per_facet
         self.radius = 0.5 * (spacing if diameter is None else diameter)
         if 2.0 * self.radius > spacing * (1.0 + 1e-9):
@@ -116,17 +119,38 @@ class GluedGrains:
         return floor if grains is None else min(floor, drop_height_on(grains, self.reference, radius))
 
     def move(self, particles: ParticleSystem, displacement: Floats, before: Floats, interval: float) -> None:
-        velocity = self.velocities((displacement - before) / interval)
-        particles.steer(self._own(particles), self.places(displacement), interval, velocity)
+        own, goal = self._own(particles), self.places(displacement)
+        particles.steer(own, goal, interval, self.velocities((displacement - before) / interval))
+        if self._turns(particles):
+            particles.grains.omega[own] = self._couples.spins(self.places(before), goal, interval)
 
     def forces(self, particles: ParticleSystem) -> Pushed:
-        return self._pushed(particles.force_on(self._own(particles)))
+        own = self._own(particles)
+        force, couples = particles.force_on(own), None
+        if self._turns(particles):
+            couples = self._couples.now(particles.grains.torque[own], particles.grains.position[own])
+        return self._pushed(force, couples)
 
     def impulses(self, particles: ParticleSystem) -> Pushed:
-        return self._pushed(particles.impulse_on(self._own(particles)))
+        own = self._own(particles)
+        impulse, couples = particles.impulse_on(own), None
+        if self._turns(particles):
+            couples = self._couples.over_window(particles.angular_impulse_on(own))
+        return self._pushed(impulse, couples)
 
-    def _pushed(self, force: Floats) -> Pushed:
-        return Pushed(self.nodal_forces(force), force.sum(axis=0))
+    def _pushed(self, force: Floats, couples: Floats | None) -> Pushed:
+        return Pushed(self.nodal_forces(force if couples is None else force + couples), force.sum(axis=0))
+
+    def _turns(self, particles: ParticleSystem) -> bool:
+        """Whether there are torques, and they are kept."""
+        return self._couples is not None and particles.contact.spins
+
+    @property
+    def drops_moment(self) -> bool:
+        return self._couples is None
+
+    def moment_dropped(self, particles: ParticleSystem) -> float:
+        return 0.0 if self._couples is not None else float(particles.angular_impulse_on(self._own(particles)).sum())
 
     def _own(self, particles: ParticleSystem) -> slice:
         """Places of the glued grains, the first of the prescribed ones."""
@@ -138,3 +162,28 @@ class GluedGrains:
 
     def work(self, particles: ParticleSystem) -> float:
         return particles.work_by(self._own(particles))
+
+
+class _Seats(NamedTuple):
+    """Where glued grains sit: (k,) each, the facet, its nodes, and the share of its length."""
+
+    facet: NDArray[np.int64]
+    first: NDArray[np.int64]
+    second: NDArray[np.int64]
+    fraction: Floats
+
+    def on_nodes(self, nodes: int) -> NDArray[np.int64]:
+        """The grain on each node, -1 where there is none."""
+        grain = np.full(nodes, -1)
+        for node, end in ((self.first, 0.0), (self.second, 1.0)):
+            there = np.nonzero(self.fraction == end)[0]
+            grain[node[there]] = there
+        return grain
+
+
+def _seats(facets: NDArray[np.int64], per_facet: int) -> _Seats:
+    """Seats in the order of the facets, and on the last nodes of open chains at the end."""
+    last = np.nonzero(np.isin(facets[:, 1], np.setdiff1d(facets[:, 1], facets[:, 0])))[0]
+    facet = np.append(np.repeat(np.arange(len(facets)), per_facet), last)
+    fraction = np.append(np.tile(np.arange(per_facet) / per_facet, len(facets)), np.ones(len(last)))
+    return _Seats(facet, facets[facet, 0], facets[facet, 1], fraction)

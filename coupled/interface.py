@@ -32,12 +32,15 @@ class Interface(Protocol):
         Reference boundary.
     radius : float
         Of what the grains meet [m]; infinite for facets.
+    drops_moment : bool
+        Whether torques of the contacts are lost.
     operator : (k, n_b) sparse
         P: displacements of the closest contacts that are possible from those of the boundary nodes.
     """
 
     polyline: BoundaryPolyline
     radius: float
+    drops_moment: bool
     operator: csr_matrix
 
     def describe(self) -> tuple[str, str]:
@@ -60,6 +63,9 @@ class Interface(Protocol):
 
     def impulses(self, particles: ParticleSystem) -> Pushed:
         """Impulses of the grains [N s/m] during the last `advance`."""
+
+    def moment_dropped(self, particles: ParticleSystem) -> float:
+        """Angular impulse [N m s/m] of the last `advance` that is not given to the structure."""
 
     def contact_forces(self, particles: ParticleSystem) -> Floats:
         """Forces (k, 2) [N/m] on the structure now: one for each glued grain; with facets one for each grain."""

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from coupled.exchanged import Exchanged
 from coupled.interface import Interface, Pushed
 from coupled.iterated import IteratedExchange, Iteration
 from particles import ParticleSystem
@@ -23,7 +24,7 @@ class Snapshot(NamedTuple):
 
     grains: GrainSnapshot | None
     structure: dict[str, Any] | None
-    own: tuple[int, Floats | None, Pushed]
+    own: tuple[int, Floats | None, Pushed, Exchanged]
     exchange: dict[str, Floats]
 
 
@@ -63,6 +64,8 @@ class Model:
         Of the grains on the boundary nodes in the last window [N/m], its mean with sub-cycling.
     reaction : (2,)
         Its resultant, from the contacts themselves [N/m].
+    exchanged : Exchanged
+        Sums over the windows; on rank 0.
     """
 
     def __init__(
@@ -84,6 +87,7 @@ class Model:
         self._boundary = None if structure is None else structure.boundary_displacement
         self.nodal_force = np.zeros_like(structure.polyline.points) if structure is not None else np.zeros((0, 2))
         self.reaction = np.zeros(2)
+        self.exchanged = Exchanged()
         if particles is not None and interface is not None:
             particles.start()
             self._take(interface.forces(particles))
@@ -114,6 +118,7 @@ class Model:
             step = self._step()
             for _ in range(steps):
                 step()
+                self._count()
             if self.structure.comm.size > 1:  # an error of the last step reaches the ranks without grains here
                 agreed_force(self.nodal_force, self.nodal_force.shape, self.structure.comm)
         self.steps_done += steps
@@ -163,6 +168,13 @@ class Model:
             received = interface.impulses(particles)
             self._take(Pushed(received.nodal / self.window, received.resultant / self.window))
 
+    def _count(self) -> None:
+        """Enter the window that has just ended."""
+        if self.particles is not None:
+            places = self.structure.polyline.points + self._boundary
+            parts = (self.interface, self.particles, self.structure)
+            self.exchanged = self.exchanged.after_window(*parts, self.window * self.nodal_force, places)
+
     def _take(self, pushed: Pushed) -> None:
         self.nodal_force, self.reaction = pushed
 
@@ -178,7 +190,7 @@ class Model:
             grains = self.particles.snapshot(None if into is None else into.grains)
         body = None if self.structure is None else self.structure.snapshot()
         exchange = {} if self.iterated is None else self.iterated.state()
-        own = (self.steps_done, self._boundary, Pushed(self.nodal_force, self.reaction))
+        own = (self.steps_done, self._boundary, Pushed(self.nodal_force, self.reaction), self.exchanged)
         return Snapshot(grains, body, own, exchange)
 
     def rewind(self, snapshot: Snapshot, *, forget: bool = True) -> None:
@@ -186,7 +198,7 @@ class Model:
 
         `forget`: what the iterated exchange has learnt since.
         """
-        self.steps_done, self._boundary, pushed = snapshot.own
+        self.steps_done, self._boundary, pushed, self.exchanged = snapshot.own
         self._take(pushed)
         if snapshot.structure is not None:
             self.structure.rewind(snapshot.structure)
@@ -204,6 +216,7 @@ class Model:
             saved |= {f"structure.{name}": array for name, array in self.structure.state().items()}
         if self.particles is not None:
             saved |= {f"particles.{name}": array for name, array in self.particles.state().items()}
+            saved["model.exchanged"] = np.array(self.exchanged)
         if self.iterated is not None:
             saved |= {f"exchange.{name}": array for name, array in self.iterated.state().items()}
         return saved
@@ -217,6 +230,7 @@ class Model:
         if self.particles is not None:
             self.particles.restore(_part(saved, "particles."))
             self._take(Pushed(np.array(saved["model.nodal_force"]), np.array(saved["model.reaction"])))
+            self.exchanged = Exchanged(*saved.get("model.exchanged", np.zeros(0)).tolist())  # older states have none
         if self.iterated is not None:
             self.iterated.restore(_part(saved, "exchange."))
 

@@ -31,6 +31,10 @@ UNITS = {
     "ledger_error": "J/m",
     "ledger_relative_error": "-",
     "interface_residual": "J/m",
+    "interface_residual_window": "J/m",
+    "interface_work": "J/m",
+    "moment_dropped": "N m s/m",
+    "moment_dropped_share": "-",
     "momentum_residual": "-",
 }
 
@@ -59,7 +63,7 @@ def observe(model: Model, start: dict[str, float] | None) -> Observation:
         numbers |= _grain_numbers(model, look)
     numbers["ledger_error"], numbers["ledger_relative_error"] = balance.error, balance.relative_error
     if model.interface is not None:
-        numbers["interface_residual"] = balance.interface_residual
+        numbers |= _interface_numbers(model, balance)
     if model.particles is not None:
         numbers["momentum_residual"] = momentum_residual(model)
     return Observation(numbers | balance.entries, balance, look)
@@ -73,6 +77,19 @@ def momentum_residual(model: Model) -> float:
         gap = np.abs(model.nodal_force.sum(axis=0) - model.reaction).max()
         residual = max(residual, float(gap) / scale)
     return residual
+
+
+def _interface_numbers(model: Model, balance: Balance) -> dict[str, float]:
+    """The works on both sides, and the moment that glued grains have not passed on, if they drop it."""
+    sums = model.exchanged
+    numbers = {
+        "interface_residual": balance.interface_residual,
+        "interface_residual_window": sums.worst_window,
+        "interface_work": sums.work,
+    }
+    if model.interface.drops_moment:
+        numbers |= {"moment_dropped": sums.moment_dropped, "moment_dropped_share": sums.share_dropped}
+    return numbers
 
 
 def _structure_numbers(model: Model) -> dict[str, float]:

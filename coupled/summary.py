@@ -49,6 +49,10 @@ def summarise(
         "ledger_error": numbers["ledger_error"],
         "energy_turned_over": seen.balance.throughput,
         "interface_residual": numbers.get("interface_residual", 0.0),
+        "interface_residual_share": model.exchanged.share_of_work(numbers.get("interface_residual", 0.0)),
+        "interface_work": model.exchanged.work,
+        "moment_dropped": model.exchanged.moment_dropped,
+        "moment_dropped_share": model.exchanged.share_dropped,
         "momentum_residual_max": peaks["momentum_residual"],
     }
     if model.iterated is not None:
@@ -91,6 +95,16 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
         f"{summary['energy_turned_over']:.4g} J/m turned over",
         f"  momentum residual        {summary['momentum_residual_max']:12.2e}       of the contact forces",
     ]
+    if summary["interface_work"]:
+        lines.append(
+            f"  interface residual       {summary['interface_residual']:12.2e} J/m   "
+            f"{summary['interface_residual_share']:.2e} of {summary['interface_work']:.4g} J/m exchanged"
+        )
+    if summary["moment_dropped_share"]:
+        lines.append(
+            f"  moment dropped           {summary['moment_dropped']:12.2e} N m s/m, "
+            f"{summary['moment_dropped_share']:.2g} of that of the forces; interface.couple = true keeps it"
+        )
     if summary["free_grains"]:
         lines.append(
             f"  particle-steps per s     {summary['particle_steps_per_second']:12.3g}       time step "

@@ -123,7 +123,7 @@ class ParticleSystem:
         self.steps_done = 0
         self.rebuilds = 0
         self.blocks = block_starts(grains.n_free, len(grains))
-        self.impulse = np.zeros((len(grains) - grains.n_free, 2))
+        self.impulse = np.zeros((len(grains) - grains.n_free, 3))
         self.ledger = None
         if ledger:
             self.ledger = LedgerArrays(
@@ -213,7 +213,7 @@ class ParticleSystem:
         """Send the prescribed grains at `places` to `target` (k, 2) [m] within `interval` [s].
 
         Their velocity is what takes them there, or `velocity` (k, 2) [m/s] if one is given: then
-        they start from where that velocity ends at the target.
+        they start from where that velocity ends at the target. Their spin stays.
         """
         goal = np.asarray(target, float)
         g = self.grains
@@ -237,7 +237,12 @@ class ParticleSystem:
     def impulse_on(self, places: slice) -> NDArray[np.float64]:
         """Contact impulse (k, 2) [N s/m] on prescribed grains during the last `advance`."""
         first = self.grains.n_free
-        return self.impulse[places.start - first : places.stop - first]
+        return self.impulse[places.start - first : places.stop - first, :2]
+
+    def angular_impulse_on(self, places: slice) -> NDArray[np.float64]:
+        """Angular impulse (k,) [N m s/m] on prescribed grains about their centres during the last `advance`."""
+        first = self.grains.n_free
+        return self.impulse[places.start - first : places.stop - first, 2]
 
     # -- looking ------------------------------------------------------------------------------
 

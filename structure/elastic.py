@@ -202,6 +202,11 @@ class ElasticStructure(Rewinding):
             scheme_loss=self._scheme_loss,
         )
 
+    @property
+    def boundary_work(self) -> float:
+        """Work [J/m] of the nodal forces since the start, as in `energies`."""
+        return self._boundary_work
+
     def centroid(self) -> NDArray[np.float64]:
         """Present centroid (2,) [m]."""
         return self._body.centroid_now(self._stepper.displacement)

@@ -46,6 +46,11 @@ class Structure(Protocol):
         """Time [s] since the start."""
         ...
 
+    @property
+    def boundary_work(self) -> float:
+        """Work [J/m] of the nodal forces since the start; on every rank, at no cost."""
+        ...
+
     def begin_under(self, boundary_force: Floats) -> None:
         """Start anew at t = 0 as it is, under nodal forces (n_b, 2) [N/m]."""
         ...

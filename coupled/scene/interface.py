@@ -30,6 +30,9 @@ class Interface(Table):
     velocity: Literal["shape", "mean"] = Field(
         "shape", description="velocity of a glued grain: interpolated, or the facet's mean (G)"
     )
+    couple: bool = Field(
+        True, description="give the torque of a glued grain to its nodes as a couple; false drops it (G)"
+    )
     exchange: Literal["predicted", "lagged", "iterated"] = Field(
         "predicted",
         description="order of the exchange: predicted interface, G's lagged order, or iterated until both sides agree",

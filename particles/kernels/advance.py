@@ -27,6 +27,7 @@ def receive(b, grains, ledger, dt):
     for i in range(first, grains.block_start[b + 1]):
         grains.impulse[i - first, 0] += dt * grains.fx[i]
         grains.impulse[i - first, 1] += dt * grains.fy[i]
+        grains.impulse[i - first, 2] += dt * grains.torque[i]
     if ledger is not None:
         prescribed_work(b, grains, ledger, dt)
 

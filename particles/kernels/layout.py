@@ -50,7 +50,7 @@ class GrainArrays(NamedTuple):
     material: Array  # (n,) row in the table of laws, if there is one
     x_listed: Array  # (n,) position when the contact list was made
     y_listed: Array
-    impulse: Array  # (n_prescribed, 2) contact impulse received since it was cleared [N s/m]
+    impulse: Array  # (n_prescribed, 3) of force x, y and torque since it was cleared [N s/m, N m s/m]
     block_start: Array  # (n_blocks + 1,) first grain of each block; the last block is prescribed
     period_x: float | None  # after which everything repeats; None: it does not
     period_y: float | None

@@ -101,6 +101,11 @@ class PrescribedRigid(Rewinding):
             boundary_work=self._boundary_work,
         )
 
+    @property
+    def boundary_work(self) -> float:
+        """Work [J/m] of the nodal forces since the start, as in `energies`."""
+        return self._boundary_work
+
     def centroid(self) -> NDArray[np.float64]:
         """Present centroid (2,) [m]."""
         return self._reference_centroid + self._motion.shift

@@ -11,6 +11,13 @@ from coupled.build import Built, build
 from coupled.model import Model
 from coupled.scene import Scene, load_scene
 
+ELASTIC = {"kind": "elastic", "youngs_modulus": 1e9, "poissons_ratio": 0.3}
+BODIES: dict[str, dict[str, Any]] = {
+    "elastic": ELASTIC,
+    "corotational": ELASTIC | {"theory": "corotational"},
+    "rigid": {"kind": "free_rigid"},
+}
+
 
 def rigid_beam_on_springs(
     *,
@@ -46,8 +53,13 @@ def discs_on_free_beam(
     friction: float = 0.0,
     gravity: tuple[float, float] = (0.0, 0.0),
     interface: dict[str, Any] | None = None,
+    body: dict[str, Any] | None = None,
+    damping: float = 0.0,
 ) -> Built:
-    """A free elastic beam, 0.2 x 0.02 m, without damping, and free discs (x, y, vx, vy, spin) above it."""
+    """A free beam, 0.2 x 0.02 m, without damping, and free discs (x, y, vx, vy, spin) above it.
+
+    It is elastic unless `body` says otherwise; `damping` [N s/m] is that of the contacts.
+    """
     tables = {
         "title": "Discs fall on a free beam",
         "gravity": gravity,
@@ -63,12 +75,11 @@ def discs_on_free_beam(
             "tangential_stiffness": 5e4,
             "friction": friction,
             "rolling_friction": 0.1,
+            "normal_damping": damping,
         },
-        "structure": {
-            "kind": "elastic",
+        "structure": (body or ELASTIC)
+        | {
             "density": 1000.0,
-            "youngs_modulus": 1e9,
-            "poissons_ratio": 0.3,
             "beam": {"length": 0.2, "height": 0.02, "along": 20, "across": 2},
             "placement": {"x": 0.0, "y": -0.01},
         },
