@@ -65,6 +65,7 @@ class IndependentBeam(IndependentBody):
         friction: float = np.inf,
         may_pull: bool = False,
         below_facets: float | None = None,
+        couples: bool = True,
     ) -> Rest:
         """Equilibrium on springs at abscissae `springs`; the active set is found by iteration.
 
@@ -74,7 +75,9 @@ class IndependentBeam(IndependentBody):
         stretched by the integral of ``(between - delta) dphi``; for a load that grows in
         proportion this is ``-x (between/delta) ln(1 - delta/between)``. Sideways each pair so has
         the stiffness ``k_t (1 + delta/(2 between) + ...) - F_n/(between - delta)``. At Coulomb's
-        limit the tangential spring is replaced by its constant force.
+        limit the tangential spring is replaced by its constant force. The upper disc turns with its facet, by the
+        facet's slope s: the contact, ``(between - delta)/2`` below its centre, goes ``(between/2 - delta/4) s``
+        farther, and the shear turns the facet with that arm; without `couples` the disc does neither.
 
         Discs of the radius `below_facets` [m] have no such line: `between` is infinite, the normal force leans
         with the facet's own slope, and stays where it is when the facet moves along.
@@ -82,29 +85,34 @@ class IndependentBeam(IndependentBody):
         across, along_x = self._at_springs(springs, 1), self._at_springs(springs, 0)
         closed, slips = np.ones(len(springs), bool), np.zeros(len(springs), bool)
         push, slide, climb, lean = np.zeros((4, len(springs)))
+        turn = self._slope_at(springs) if couples and not below_facets else None
         for _ in range(100):
             delta = push / normal
             stretch = 1 + delta / (2 * between) + (delta / between) ** 2 / 3
-            sideways = closed * (~slips * tangential * stretch - push / (between - delta))
+            rub, reach, tilt = diags(stretch) @ along_x, along_x, closed * push / (between - delta)
+            if turn is not None:
+                rub, reach = rub + diags(between / 2 - delta / 4) @ turn, reach + diags((between - delta) / 2) @ turn
+            sticks = closed * ~slips * tangential
             held = closed * np.where(slips, -friction * push * np.sign(slide), -tangential * climb)
             system = self.stiffness + across.T @ diags(closed * normal) @ across
-            system = system + along_x.T @ diags(sideways) @ along_x
+            system = system + reach.T @ diags(sticks) @ rub - along_x.T @ diags(tilt) @ along_x
             if below_facets:
                 slope = self._slope_at(springs - slide - below_facets * lean)  # the foot on the material
                 turned = along_x.T @ diags(push) @ slope
                 system = system + turned + turned.T
-            moved = splu(system.tocsc()).solve(load + along_x.T @ held)
-            down, slide = -(across @ moved), along_x @ moved
+            moved = splu(system.tocsc()).solve(load + reach.T @ held)
+            down, slide = -(across @ moved), rub @ moved
             if below_facets:
                 lean = slope @ moved
                 climb = -0.5 * lean * down  # of the way along a facet that turns while it goes down
             old = (push, closed, slips)
             push = closed * normal * down
             closed = np.full(len(springs), True) if may_pull else down > 0
-            slips = np.abs(tangential * stretch * slide) > friction * np.maximum(push, 0)
+            slips = np.abs(tangential * slide) > friction * np.maximum(push, 0)
             unchanged = (old[1] == closed).all() and (old[2] == slips).all()
             if unchanged and np.abs(push - old[0]).max() <= 1e-12 * np.abs(push).max():
-                return Rest(moved, push, held - sideways * slide - push * lean, slips & closed)
+                shear = held - sticks * slide + tilt * (along_x @ moved) - push * lean
+                return Rest(moved, push, shear, slips & closed)
         raise AssertionError("the set of closed springs does not settle")
 
     def facet_of(self, abscissae: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
