@@ -7,11 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coupled.bed import bed_folder
 from coupled.errors import LeitoError
 from coupled.output import checkpoint
 from coupled.output.lock import only_process
 from coupled.run import run_scene
 from coupled.scene import load_scene
+from coupled.step import with_step
 from coupled.templates import write_template
 
 LEITO = [sys.executable, "-m", "coupled.cli"]
@@ -25,11 +27,14 @@ def start(place: Path, out: str) -> subprocess.Popen[str]:
 
 
 def test_two_processes_that_want_the_same_bed_settle_it_once(tmp_path: Path) -> None:
-    write_template("tube", tmp_path / "tube.toml")
-    both = [start(tmp_path, name) for name in ("one", "two")]
+    """Both find it held by a third one, wait, and when it is free one settles it and the other takes it."""
+    scene = load_scene(write_template("tube", tmp_path / "tube.toml"), SHORT)
+    with only_process(bed_folder(with_step(scene), tmp_path / "runs")):
+        both = [start(tmp_path, name) for name in ("one", "two")]
+        for process in both:
+            assert "waiting for another process that settles the bed in" in process.stderr.readline()
     said = [process.communicate(timeout=300) for process in both]
     assert [process.returncode for process in both] == [0, 0], said
-    assert sum("waiting for another process that settles the bed in" in err for _, err in said) == 1
     assert sum(out.count("Small bed:") for out, _ in said) == 1, "settled once"
     one, two = (checkpoint.load(tmp_path / "runs" / name / "checkpoint.h5")[0] for name in ("one", "two"))
     for name in one.keys() - {"run.seconds"}:
