@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 import meshes
 import particles as dem
 import structure as fem
+from coupled.closed_ratio import ClosedRatio
 from coupled.errors import LeitoError
 from coupled.exchange_limit import ITERATED, exchange_limit
 from coupled.facets import FacetInterface
@@ -87,6 +89,7 @@ def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI
         time_step=scene.time.step,
     )
     ratio = _stiffness_ratio(scene, model, contact, comm)
+    model.closed_ratio = _closed_ratio(scene, model, contact)
     dt_ratio = scene.time.step / dem.source_bound(system.grains, contact) if system is not None else 0.0
     return Built(model, scene, contact, ratio, comm.bcast(dt_ratio, root=0))
 
@@ -267,6 +270,16 @@ def _iteration(scene: Scene) -> Iteration | None:
         return None
     asked = {"tolerance": table.tolerance, "most": table.iterations}
     return Iteration(**{name: value for name, value in asked.items() if value is not None})
+
+
+def _closed_ratio(scene: Scene, model: Model, contact: dem.Contact | None) -> ClosedRatio | None:
+    """The watch over r; None for what no force moves."""
+    interface, body = model.interface, model.structure
+    if interface is None or scene.structure.kind == "rigid":
+        return None
+    grains = None if model.particles is None else model.particles.grains
+    spring = partial(interface_spring, scene, contact, grains, interface.radius)
+    return ClosedRatio(interface, body, spring=spring, window=model.window)
 
 
 def _stiffness_ratio(scene: Scene, model: Model, contact: dem.Contact | None, comm: MPI.Intracomm) -> float:

@@ -88,3 +88,17 @@ def beyond_theory(built: Built, numbers: Mapping[str, float]) -> dict[str, str]:
     if structure is None or structure.theory is None:
         return {}
     return departures(structure.theory, numbers)
+
+
+def beyond_exchange(built: Built, numbers: Mapping[str, float]) -> dict[str, str]:
+    """A sentence, by quantity, where the closed contacts are stiffer than the exchange bears on fixed partners."""
+    ratio = numbers.get("stiffness_ratio", 0.0)
+    limit = stable_ratio(built.scene) if built.model.interface is not None else math.inf
+    if ratio <= limit:
+        return {}
+    step = built.scene.time.step
+    return {
+        "stiffness_ratio": f"the contacts that are closed now have the stiffness ratio r = {ratio:.3g}, above "
+        f"{limit:.4g}, the limit on fixed partners ({built.stiffness_ratio:.3g} was expected): watch the interface "
+        f"residual, or take time.step = {step * limit / ratio:.2g} s"
+    }

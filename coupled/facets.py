@@ -11,10 +11,11 @@ from scipy.sparse import csr_matrix
 
 from coupled.interface import Pushed, shares
 from meshes import BoundaryPolyline
-from particles import Facets, Grains, ParticleSystem
+from particles import ContactLook, Facets, Grains, ParticleSystem
 from particles.beds import drop_height_of_facets
 
 Floats = NDArray[np.float64]
+TINY = np.finfo(float).tiny
 
 
 class FacetInterface:
@@ -86,6 +87,19 @@ class FacetInterface:
 
     def contact_forces(self, particles: ParticleSystem) -> Floats:
         return particles.facets.force_by_grain(len(particles.grains))
+
+    def closed(self, particles: ParticleSystem, look: ContactLook) -> tuple[csr_matrix, float]:
+        a = particles.facets.arrays
+        slots = np.nonzero(a.pushes)[0]
+        feature, push = a.feature[slots], a.push[slots]
+        whole = push.sum(axis=1)
+        share = np.einsum("kns,ks->kn", push, whole) / np.maximum(np.sum(whole**2, axis=1), TINY)[:, None]
+        nodes = np.column_stack([a.before[feature], a.at[feature], a.after[feature]])
+        used = (nodes >= 0) & (share != 0.0)
+        rows = np.repeat(np.arange(len(slots)), used.sum(axis=1))
+        operator = csr_matrix((share[used], (rows, nodes[used])), shape=(len(slots), len(self.polyline.points)))
+        overlap = particles.facets.touching(particles.grains)[:, 2]
+        return operator, float(overlap.max(initial=0.0))
 
     def work(self, particles: ParticleSystem) -> float:
         return particles.facets.work

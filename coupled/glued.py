@@ -7,12 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix, diags
 
 from coupled.couples import FacetCouples
 from coupled.errors import LeitoError
 from coupled.interface import Pushed, shares
 from meshes import BoundaryPolyline
-from particles import Grains, ParticleSystem
+from particles import ContactLook, Grains, ParticleSystem
 from particles.beds import drop_height_on
 
 Floats = NDArray[np.float64]
@@ -159,6 +160,13 @@ class GluedGrains:
 
     def contact_forces(self, particles: ParticleSystem) -> Floats:
         return particles.force_on(self._own(particles))
+
+    def closed(self, particles: ParticleSystem, look: ContactLook) -> tuple[csr_matrix, float]:
+        own = self._own(particles)
+        contacts, overlap = look.contacts[own], look.overlap[own]
+        touching = np.nonzero(contacts)[0]
+        several = diags(np.sqrt(contacts[touching]))  # partners of one grain add up
+        return (several @ self.operator[touching]).tocsr(), float(overlap.max(initial=0.0))
 
     def work(self, particles: ParticleSystem) -> float:
         return particles.work_by(self._own(particles))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from meshes import BoundaryPolyline
-from particles import Facets, Grains, ParticleSystem
+from particles import ContactLook, Facets, Grains, ParticleSystem
 
 Floats = NDArray[np.float64]
 POWER_STEPS, POWER_TOLERANCE = 300, 1e-4  # of the power iteration for the stiffness ratio
@@ -69,6 +69,9 @@ class Interface(Protocol):
 
     def contact_forces(self, particles: ParticleSystem) -> Floats:
         """Forces (k, 2) [N/m] on the structure now: one for each glued grain; with facets one for each grain."""
+
+    def closed(self, particles: ParticleSystem, look: ContactLook) -> tuple[csr_matrix, float]:
+        """P of the contacts that are closed now (k, n_b), and the deepest of their overlaps [m]."""
 
     def work(self, particles: ParticleSystem) -> float:
         """Work [J/m] that it did on the grains since the start."""

@@ -68,8 +68,9 @@ class IteratedExchange:
 
     def __init__(self, model: Model, iteration: Iteration) -> None:
         self._model, self._wanted = model, iteration
-        self._secants = Secants(model.structure.polyline.points.size)
-        self._noise = ROUND_OFF * float(np.abs(model.structure.polyline.points).max())
+        points = model.structure.polyline.points
+        self._noise = ROUND_OFF * float(np.abs(points).max())
+        self._secants = Secants(points.size, self._noise)
         self._before: Snapshot | None = None
         self._given, self._velocity = model.nodal_force, model.structure.boundary_velocity
         scheme = getattr(model.structure, "scheme", None)  # rigid bodies have none and keep the mean

@@ -87,15 +87,18 @@ def choose(scene: Scene) -> Choice:
     return Choice(numbers=numbers, mass=mass, radius=grains.smallest_radius, speed=speed, overlap=overlap)
 
 
-def interface_spring(scene: Scene, law: dem.Contact, grains: dem.Grains, radius: float) -> tuple[float, float]:
+def interface_spring(
+    scene: Scene, law: dem.Contact, grains: dem.Grains, radius: float, overlap: float | None = None
+) -> tuple[float, float]:
     """Stiffest spring [N/m] and strongest dashpot [N s/m] that an interface of some `radius` [m] may meet.
 
-    Hertz's spring by its slope at an overlap of 5 % of the smallest radius, with the largest
+    Hertz's spring by its slope at an `overlap` [m], 5 % of the smallest radius if none is given, with the largest
     partner. Dashpots that follow from a restitution with the mass of the heaviest free grain:
     nothing is heavier, as two prescribed grains have none.
     """
     partner = float(grains.radius.max())
-    overlap, effective = ALLOWED_OVERLAP * float(grains.radius.min()), partner / (1.0 + partner / radius)
+    overlap = ALLOWED_OVERLAP * float(grains.radius.min()) if overlap is None else overlap
+    effective = partner / (1.0 + partner / radius)
     mass = float(grains.mass.max())
     springs = []
     for model in _models_of(law, scene, STRUCTURE):

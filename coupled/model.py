@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from coupled.closed_ratio import ClosedRatio
 from coupled.exchanged import Exchanged
 from coupled.interface import Interface, Pushed
 from coupled.iterated import IteratedExchange, Iteration
@@ -66,6 +67,8 @@ class Model:
         Its resultant, from the contacts themselves [N/m].
     exchanged : Exchanged
         Sums over the windows; on rank 0.
+    closed_ratio : ClosedRatio or None
+        Watches the stiffness ratio, where whoever made the model wants it.
     """
 
     def __init__(
@@ -93,6 +96,7 @@ class Model:
             self._take(interface.forces(particles))
         if structure is not None and interface is not None:
             structure.begin_under(self.nodal_force)
+        self.closed_ratio: ClosedRatio | None = None
         self.iterated = None
         if iteration is not None and interface is not None:
             self.iterated = IteratedExchange(self, iteration)

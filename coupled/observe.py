@@ -36,6 +36,7 @@ UNITS = {
     "moment_dropped": "N m s/m",
     "moment_dropped_share": "-",
     "momentum_residual": "-",
+    "stiffness_ratio": "-",
 }
 
 
@@ -64,6 +65,8 @@ def observe(model: Model, start: dict[str, float] | None) -> Observation:
     numbers["ledger_error"], numbers["ledger_relative_error"] = balance.error, balance.relative_error
     if model.interface is not None:
         numbers |= _interface_numbers(model, balance)
+    if model.closed_ratio is not None:
+        numbers["stiffness_ratio"] = model.closed_ratio.now(model.particles, look)
     if model.particles is not None:
         numbers["momentum_residual"] = momentum_residual(model)
     return Observation(numbers | balance.entries, balance, look)

@@ -26,6 +26,7 @@ from structure import solver_options
 
 PEAKS = (
     "max_von_mises", "max_strain", "momentum_residual", "reaction_y", "rotation", "local_rotation", "compression",
+    "stiffness_ratio",
 )  # fmt: skip
 FIRST = ("centroid_y",)
 
@@ -97,7 +98,7 @@ class Record:
         """Enter the peaks of an observation; say once of each that it leaves the theory in use."""
         for name in PEAKS:
             self.peaks[name] = max(self.peaks[name], abs(seen.numbers.get(name, 0.0)))
-        beyond = cautions.beyond_theory(self.built, seen.numbers)
+        beyond = cautions.beyond_theory(self.built, seen.numbers) | cautions.beyond_exchange(self.built, seen.numbers)
         self.say([f"t = {self.model.time:g} s: {beyond[name]}" for name in beyond if name not in self._warned])
         self._warned |= beyond.keys()
 

@@ -26,9 +26,12 @@ class Secants:
     ----------
     size : int
         Of x.
+    noise : float
+        Changes of c up to this are round-off and tell no slope.
     """
 
-    def __init__(self, size: int) -> None:
+    def __init__(self, size: int, noise: float) -> None:
+        self._noise = noise
         self._moved, self._changed = np.zeros((0, size)), np.zeros((0, size))
         self.begin()
 
@@ -38,17 +41,15 @@ class Secants:
 
     def step(self, place: Floats, correction: Floats) -> Floats:
         """What is to be added to `place` (size,), where the iteration asks for `correction` (size,)."""
-        if self._last is not None:
+        if self._last is not None and np.abs(correction - self._last[1]).max() > self._noise:
             self._moved = np.vstack([place - self._last[0], self._moved[: KEPT - 1]])
             self._changed = np.vstack([correction - self._last[1], self._changed[: KEPT - 1]])
         self._last = (place, correction)
-        sizes = np.linalg.norm(self._changed, axis=1)
-        seen = sizes > 0.0
-        if not seen.any():
+        size = float(np.linalg.norm(self._changed))
+        if size == 0.0:
             return correction
-        moved, changed = (rows[seen] / sizes[seen, None] for rows in (self._moved, self._changed))
-        weights = np.linalg.lstsq(changed.T, correction, rcond=SMALLEST)[0]
-        return correction - weights @ (moved + changed)
+        weights = np.linalg.lstsq(self._changed.T, correction, rcond=max(SMALLEST, self._noise / size))[0]
+        return correction - weights @ (self._moved + self._changed)
 
     def state(self) -> dict[str, Floats]:
         """The secants; nothing writes into these arrays."""

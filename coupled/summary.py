@@ -45,6 +45,7 @@ def summarise(
         "network_dt_ratio": limits.of_network if limits is not None else 0.0,
         "stiffness_ratio_r": built.stiffness_ratio,
         "stable_ratio": stable_ratio(built.scene) if model.interface is not None else 0.0,
+        "stiffness_ratio_max": peaks["stiffness_ratio"],
         "ledger_relative_error": numbers["ledger_relative_error"],
         "ledger_error": numbers["ledger_error"],
         "energy_turned_over": seen.balance.throughput,
@@ -114,7 +115,8 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
     if summary["stiffness_ratio_r"]:
         lines.append(
             f"  stiffness ratio r        {summary['stiffness_ratio_r']:12.3g}       stable up to "
-            f"{summary['stable_ratio']:.4g} on fixed partners"
+            f"{summary['stable_ratio']:.4g} on fixed partners; of closed contacts at most "
+            f"{summary['stiffness_ratio_max']:.3g}"
         )
     if "exchange_iterations" in summary:
         unsettled, farthest = summary["exchange_unsettled"], summary["exchange_farthest"]

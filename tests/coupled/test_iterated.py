@@ -47,7 +47,7 @@ def test_a_beam_on_springs_swings_as_the_trapezoidal_rule_says(ratio: float, sub
     np.testing.assert_allclose(np.abs(seen), np.abs(seen[0]), rtol=1e-6)
     turned = np.unwrap(np.angle(seen[1:] / seen[:-1]))
     np.testing.assert_allclose(np.abs(turned), 2 * np.arctan(omega * window / 2), rtol=1e-6)
-    assert model.iterated.trials <= 3.1 * model.steps_done  # a single mode: two tries give its slope
+    assert model.iterated.trials <= 4 * model.steps_done  # a single mode: the second try is right but for round-off
 
 
 @pytest.mark.parametrize("kind", INTERFACES)
