@@ -150,13 +150,18 @@ def test_a_bed_that_falls_near_the_bound_of_the_source_is_sound(tmp_path: Path) 
 
 BEAM = [
     "structure.loads.0.schedule.over=0.02", "structure.rayleigh.stiffness_factor=0.0", "contact.normal_damping=0.0",
-    "interface.largest_stiffness_ratio=100.0", "time.duration=0.3", "output.history_interval=0.3",
+    "interface.largest_stiffness_ratio=100.0", "interface.couple=false", "time.duration=0.3",
+    "output.history_interval=0.3",
     "output.figures=false", "output.frames_per_second=0",
 ]  # fmt: skip
 
 
 def test_an_exchange_above_its_limit_names_the_interface(tmp_path: Path) -> None:
-    """The beam on springs without damping, 4 % above the limit of r (`test_exchange`): the interface makes energy."""
+    """The beam on springs without damping, 4 % above the limit of r (`test_exchange`): the interface makes energy.
+
+    Torques are dropped: with them it grows a little sooner, and slip ends it at 8 % of what the load turned over
+    before the same look.
+    """
     said = failure(load_scene("winkler_beam", [*BEAM, "time.step=1e-4"]), tmp_path / "run")
     assert "at the interface; liveliest is boundary node" in said
     assert "r = 2.08 of the coupling should be below 2" in said

@@ -183,13 +183,13 @@ scipy on the same 121 springs without tension, their shear included; the same ce
 |---|---|---|---|---|
 {rows}
 
-Largest differences to the independent solution of the same cells, of glued grains: {force:.1e} of the largest vertical
-force of a grain, {nodal:.1e} of the largest nodal force, {axis:.1e} of the bow, half of it by the rolling moments, which
-the independent springs do not know. With facets the shear acts on the lower face itself, with glued grains the radius of
-one lower, which turns its facet: the bows differ by {between:.1e}.
+Largest differences to the independent solution of the same cells, of glued grains: {force:.1e} of the largest
+vertical force of a grain, {nodal:.1e} of the largest nodal force, {axis:.1e} of the bow, half of it by the rolling
+moments, which the independent springs do not know. With facets the shear acts on the lower face itself, with glued
+grains the radius of one lower, which turns its facet: the bows differ by {between:.1e}.
 
-As in the source the beam is in tension below and in compression above, its axis is symmetric with the middle lowest, the
-force of a grain is largest in the middle, and the end nodes carry less, as two springs and not three push there. A
+As in the source the beam is in tension below and in compression above, its axis is symmetric with the middle lowest,
+the force of a grain is largest in the middle, and the end nodes carry less, as two springs and not three push there. A
 uniform load on uniform springs alone would not bend it: the full springs on half tributary lengths at the ends do.
 """
 
