@@ -78,9 +78,14 @@ def summarise(
     return summary
 
 
+# Told only where they are not zero; folders of earlier versions lack them.
+ADDED = ("network_dt_ratio", "interface_work", "moment_dropped_share", "stiffness_ratio_max")
+
+
 def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
-    """The lines printed at the end of a run."""
-    wall, in_contact = summary["wall_seconds"], summary.get("network_dt_ratio", 0.0) > 0.0
+    """The lines printed at the end of a run, also of one that an earlier version made."""
+    summary = dict.fromkeys(ADDED, 0.0) | summary
+    wall, in_contact = summary["wall_seconds"], summary["network_dt_ratio"] > 0.0
     lines = [f"{summary['title']}: {summary['simulated_seconds']:g} s simulated in {wall:.1f} s"]
     if "applied_y" in summary:
         lines += [

@@ -20,6 +20,7 @@ from coupled.output.frames import read_frame
 from coupled.output.history import read_history
 from coupled.run import run_scene
 from coupled.scene import dump_scene, load_scene
+from coupled.summary import ADDED, tell
 from coupled.templates import write_template
 
 SUMMARY_NAMES = {
@@ -69,6 +70,12 @@ def test_balances_close(summary: dict[str, float]) -> None:
     assert summary["ledger_relative_error"] < 1e-3
     # sums of some thousand forces in double precision
     assert summary["momentum_residual_max"] < 1e-12
+
+
+def test_a_summary_of_an_earlier_version_is_told(tube: Path, summary: dict[str, float]) -> None:
+    earlier = {name: value for name, value in summary.items() if name not in ADDED}
+    assert len(earlier) < len(summary)
+    assert "reaction of the grains" in tell(earlier, [], tube)
 
 
 def test_summary_has_the_agreed_names(summary: dict[str, float]) -> None:
