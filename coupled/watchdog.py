@@ -19,6 +19,7 @@ DEEPEST_OVERLAP = 0.5  # of the smaller radius: the linear contact has lost its 
 FARTHEST_STEP = 0.5  # of its radius that a grain in contact may go in a step
 ENERGY_MADE = 0.25  # of the energy turned over
 OF_PRESENT = 0.01  # of kinetic and elastic energy, that energy made between two looks must exceed
+AT_INTERFACE = 0.05  # of the same, that the interface may make whatever else is turned over; in sound runs up to 1e-3
 NOISE = 1e-6  # of the energy stored: below it a relative error says nothing
 TURNING = 2e-3  # share of the free grains that turn about at every step; in sound beds up to 4e-4
 
@@ -109,7 +110,11 @@ def _energy_made(model: Model, seen: Glance, since: Glance) -> Sign | None:
     moving = sum(abs(v) for name, v in now.entries.items() if name.endswith(("kinetic", "rotational")))
     elastic = sum(v for name, v in now.entries.items() if name.endswith(("_springs", "_strain")))
     stored = sum(abs(value) for value in now.entries.values())
-    if not made > max(ENERGY_MADE * turned, OF_PRESENT * (moving + elastic), NOISE * stored):
+    residual = now.interface_residual - then.interface_residual
+    at_interface = residual > 0.5 * made > 0.5 * AT_INTERFACE * (moving + elastic)
+    if not made > NOISE * stored:
+        return None
+    if not (at_interface or made > max(ENERGY_MADE * turned, OF_PRESENT * (moving + elastic))):
         return None
     return _energy_sign(model, made, made / turned, seen, then)
 
