@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 import meshes
 import particles as dem
 import structure as fem
-from coupled.closed_ratio import ClosedRatio
 from coupled.errors import LeitoError
-from coupled.exchange_limit import ITERATED, exchange_limit
-from coupled.facets import FacetInterface
-from coupled.glued import BODY, GluedGrains
-from coupled.interface import Interface, stiffness_ratio
-from coupled.iterated import Iteration
+from coupled.exchange.iterated import Iteration
+from coupled.exchange.limit import ITERATED, exchange_limit
+from coupled.interface.closed_ratio import ClosedRatio
+from coupled.interface.door import Interface, stiffness_ratio
+from coupled.interface.facets import FacetInterface
+from coupled.interface.glued import BODY, GluedGrains
 from coupled.laws import contact_law, interface_spring
 from coupled.loads import loads_of
 from coupled.model import Model

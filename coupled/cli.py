@@ -127,7 +127,7 @@ def run(
 
     loaded = load_scene(scene, overrides or ())
     _set_petsc(petsc)
-    from coupled.run import run_scene
+    from coupled.running.run import run_scene
 
     run_scene(
         loaded,
@@ -151,7 +151,7 @@ def check(scene: SceneArgument, overrides: SetOption = None, petsc: PetscOption 
 
     loaded = load_scene(scene, overrides or ())
     _set_petsc(petsc)
-    from coupled.check import check_scene
+    from coupled.report.check import check_scene
 
     rows = check_scene(loaded)
     if _first_rank():
@@ -198,7 +198,7 @@ def plot(
     """Draw the figures of a run anew."""
     if not folder.is_dir():
         raise LeitoError(f"{folder}: there is no such folder; give the folder of a run.")
-    from coupled.figures import plot_run
+    from coupled.report.figures import plot_run
 
     for path in plot_run(folder):
         print(path)

@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from coupled.closed_ratio import ClosedRatio
-from coupled.exchanged import Exchanged
-from coupled.interface import Interface, Pushed
-from coupled.iterated import IteratedExchange, Iteration
+from coupled.exchange.iterated import IteratedExchange, Iteration
+from coupled.exchange.sums import Exchanged
+from coupled.interface.closed_ratio import ClosedRatio
+from coupled.interface.door import Interface, Pushed
 from particles import ParticleSystem
 from particles import Snapshot as GrainSnapshot
 from structure import Structure, agreed_force, withhold_force

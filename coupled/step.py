@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import particles as dem
-from coupled.glued import BODY
+from coupled.interface.glued import BODY
 from coupled.laws import contact_law
 from coupled.model import Model
 from coupled.scene import RowUnder, Scene

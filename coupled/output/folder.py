@@ -11,7 +11,7 @@ from typing import Any
 
 from coupled.errors import LeitoError
 from coupled.output import checkpoint
-from coupled.restep import STEP, with_finer_step
+from coupled.running.restep import STEP, with_finer_step
 from coupled.scene import Scene, SceneError, dump_scene, load_scene
 
 SCENE = "scene.toml"

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from coupled.model import Model
-from coupled.observe import Observation
 from coupled.output import history
 from coupled.output.frames import Frames
+from coupled.running.observe import Observation
 from structure import StructureFields
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from coupled.build import build
 from coupled.errors import LeitoError
-from coupled.iterated import ROUND_OFF
+from coupled.exchange.iterated import ROUND_OFF
 from coupled.model import Model
 from coupled.scene import Scene
 from particles import ParticleError

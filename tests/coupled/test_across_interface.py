@@ -12,9 +12,9 @@ from small_models import BODIES, discs_on_free_beam
 from ways import EXCHANGES
 
 from coupled.build import build
-from coupled.couples import FacetCouples
+from coupled.interface.couples import FacetCouples
 from coupled.model import Model
-from coupled.observe import observe
+from coupled.running.observe import observe
 from coupled.scene import Scene
 
 INTERFACES: dict[str, dict[str, Any]] = {

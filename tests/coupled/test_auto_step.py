@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from coupled.build import build
-from coupled.cautions import before
-from coupled.check import check_scene
-from coupled.run import run_scene
+from coupled.report.cautions import before
+from coupled.report.check import check_scene
+from coupled.running.run import run_scene
 from coupled.scene import Scene, SceneError, dump_scene, load_scene
 from coupled.step import limits_of, with_step
 from coupled.templates import write_template

@@ -8,11 +8,11 @@ import pytest
 from independent_beam import IndependentBeam
 from small_models import discs_on_free_beam
 
-from coupled import cautions
+from coupled.report import cautions
 from coupled.build import Built, build
-from coupled.observe import observe
+from coupled.running.observe import observe
 from coupled.output.history import read_history
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import Scene, load_scene
 
 

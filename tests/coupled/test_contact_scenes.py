@@ -9,9 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 from coupled.build import Built, build
-from coupled.contact_report import contact_numbers, contact_rows
+from coupled.report.contact import contact_numbers, contact_rows
 from coupled.output import checkpoint
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import load_scene
 from coupled.templates import write_template
 from particles import ContactModel, ContactTable

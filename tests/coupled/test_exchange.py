@@ -12,7 +12,7 @@ from small_models import discs_on_free_beam, rigid_beam_on_springs
 import structure as fem
 from coupled.build import build
 from coupled.errors import LeitoError
-from coupled.exchange_limit import exchange_limit
+from coupled.exchange.limit import exchange_limit
 from coupled.model import Model
 from coupled.scene import load_scene
 

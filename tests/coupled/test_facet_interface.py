@@ -13,10 +13,10 @@ from small_models import discs_on_free_beam
 
 from coupled.balance import take_balance
 from coupled.build import build
-from coupled.facets import FacetInterface
+from coupled.interface.facets import FacetInterface
 from coupled.model import Model
 from coupled.output import checkpoint
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import Scene, load_scene
 from coupled.templates import write_template
 from meshes import beam, tube

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coupled import guard
+from coupled.running import guard
 from coupled.build import build
 from coupled.model import Model
 from coupled.output import checkpoint
 from coupled.output.history import read_history
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import Scene, dump_scene, load_scene
 from coupled.templates import write_template
-from coupled.watchdog import Unstable
+from coupled.running.watchdog import Unstable
 from particles import sharp_limit
 from structure import StructureError
 
@@ -83,7 +83,7 @@ def test_the_state_before_a_failure_is_that_of_the_way_to_the_bit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(guard, "LOOK", 30)
-    monkeypatch.setattr("coupled.run.LOOK", 30)
+    monkeypatch.setattr("coupled.running.run.LOOK", 30)
     scene = two_discs(stiffness=2e4, speed=4.0, step=1e-5)
     failure(scene, tmp_path / "run")
     before, _ = checkpoint.load(tmp_path / "run" / "before_failure.h5")

@@ -10,10 +10,10 @@ import pytest
 from coupled.errors import LeitoError
 from coupled.output import checkpoint
 from coupled.output.history import read_history
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import Scene, load_scene
 from coupled.templates import write_template
-from coupled.watchdog import Unstable
+from coupled.running.watchdog import Unstable
 
 RADIUS, DENSITY, STIFFNESS, SPEED, GRAVITY = 0.01, 1000.0, 1e5, 1.0, 9.81
 MASS = np.pi * RADIUS**2 * DENSITY

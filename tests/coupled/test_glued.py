@@ -5,7 +5,7 @@ import pytest
 
 import meshes
 from coupled.errors import LeitoError
-from coupled.glued import GluedGrains
+from coupled.interface.glued import GluedGrains
 from coupled.scene import load_scene
 from meshes import StructureMesh
 

@@ -14,7 +14,7 @@ import pytest
 from same_run import assert_same_run
 
 from coupled.output.history import History, read_history
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import Scene, load_scene
 from coupled.templates import write_template
 

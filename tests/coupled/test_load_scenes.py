@@ -13,11 +13,11 @@ from bad_scenes import GONE, TUBE, Case, changed, require_refusal
 
 import structure as fem
 from coupled.build import build
-from coupled.check import check_scene
+from coupled.report.check import check_scene
 from coupled.errors import LeitoError
-from coupled.figures import plot_run
+from coupled.report.figures import plot_run
 from coupled.output import checkpoint
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import Scene, SceneError, dump_scene, load_scene
 
 RING: dict[str, Any] = {

@@ -11,7 +11,7 @@ from coupled.bed import bed_folder
 from coupled.errors import LeitoError
 from coupled.output import checkpoint
 from coupled.output.lock import only_process
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import load_scene
 from coupled.step import with_step
 from coupled.templates import write_template

@@ -2,7 +2,7 @@
 
 import pytest
 
-from coupled import cautions
+from coupled.report import cautions
 from coupled.build import build
 from coupled.scene import load_scene
 

@@ -13,8 +13,9 @@ FAILING = """
 import sys
 from functools import partial
 from mpi4py import MPI
-from coupled import cli, run
-from coupled.record import Record
+from coupled import cli
+from coupled.running import run
+from coupled.running.record import Record
 from particles import ParticleError, ParticleSystem
 
 comm, case = MPI.COMM_WORLD, sys.argv[1]

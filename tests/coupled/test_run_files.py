@@ -14,13 +14,13 @@ from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 
 from coupled.build import build
 from coupled.errors import LeitoError
-from coupled.figures import plot_run
+from coupled.report.figures import plot_run
 from coupled.output import checkpoint
 from coupled.output.frames import read_frame
 from coupled.output.history import read_history
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import dump_scene, load_scene
-from coupled.summary import ADDED, tell
+from coupled.report.summary import ADDED, tell
 from coupled.templates import write_template
 
 SUMMARY_NAMES = {

@@ -15,10 +15,10 @@ from same_run import assert_same_run
 
 from coupled.errors import LeitoError
 from coupled.output import checkpoint
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import Scene, load_scene
 from coupled.templates import write_template
-from coupled.watchdog import Unstable
+from coupled.running.watchdog import Unstable
 
 LEITO = [sys.executable, "-m", "coupled.cli"]
 QUICK = ["time.duration=0.4", "output.checkpoint_interval=0.02", "output.figures=false"]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from coupled.build import build
-from coupled.cautions import before
+from coupled.report.cautions import before
 from coupled.errors import SceneError
 from coupled.scene import Structure, Tube, dump_scene, load_scene
 

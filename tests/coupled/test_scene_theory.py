@@ -8,9 +8,9 @@ import tomli_w
 from bad_scenes import TUBE, changed
 
 from coupled.build import build
-from coupled.check import models
+from coupled.report.check import models
 from coupled.errors import SceneError
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import Scene, dump_scene, load_scene
 
 METAL = {"youngs_modulus": 70e5, "poissons_ratio": 0.35, "density": 2700.0}

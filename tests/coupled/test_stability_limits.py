@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from stability import Press, spectral_radius
 
-from coupled.exchange_limit import CONSERVING, CONSERVING_SUBCYCLED, ITERATED
+from coupled.exchange.limit import CONSERVING, CONSERVING_SUBCYCLED, ITERATED
 
 
 def test_eigenvalues_of_a_known_map_are_found() -> None:

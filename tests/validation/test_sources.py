@@ -15,7 +15,7 @@ import pytest
 
 from coupled.output.frames import read_frame
 from coupled.output.history import read_history
-from coupled.run import run_scene
+from coupled.running.run import run_scene
 from coupled.scene import load_scene
 
 ROOT = Path(__file__).parents[2]

@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "coupled"))
 
 from stability import Press
 
-from coupled.exchange_limit import CONSERVING, CONSERVING_SUBCYCLED, ITERATED
+from coupled.exchange.limit import CONSERVING, CONSERVING_SUBCYCLED, ITERATED
 
 PAGE = Path(__file__).parents[2] / "docs" / "validation" / "stability.md"
 DAMPINGS, SUBSTEPS = (0.0, 0.05, 0.3, 1.0, 10.0), (1, 2, 5, 10, 20)
@@ -30,7 +30,7 @@ The real model: a rigid beam pressed onto two discs, all contacts closed, distur
 is a linear map from window to window; its eigenvalues are read off 60 windows. r = H^2 (k + 2 c/H) 2/m, with H the
 structure's step, k and c of each contact, m the beam's mass. A limit is the r at which an eigenvalue passes 1 by more
 than 1e-4, to 2 %; modes of more than 200 windows a period are not judged. Glued grains and facets have the same limits
-here (tested). The structure's own stiffness moves them for schemes that dissipate only (`coupled.exchange_limit`,
+here (tested). The structure's own stiffness moves them for schemes that dissipate only (`coupled.exchange.limit`,
 `tests/coupled/test_exchange.py`).
 
 ![stability.png](stability.png)

@@ -12,16 +12,16 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from coupled import cautions
 from coupled.build import Built
 from coupled.errors import LeitoError
-from coupled.observe import Observation, observe
 from coupled.output import checkpoint
 from coupled.output.folder import RunFolder
 from coupled.output.provenance import provenance, write_json
 from coupled.output.writers import Writers
-from coupled.ranks import root_alone
-from coupled.restep import FORMER_STEP, STEP
+from coupled.report import cautions
+from coupled.running.observe import Observation, observe
+from coupled.running.ranks import root_alone
+from coupled.running.restep import FORMER_STEP, STEP
 from structure import solver_options
 
 PEAKS = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from coupled.interface import shares
+from coupled.interface.door import shares
 
 Floats = NDArray[np.float64]
 Plane = NDArray[np.complex128]  # vectors of the plane, x + i y

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
-from coupled.interface import Pushed, shares
+from coupled.interface.door import Pushed, shares
 from meshes import BoundaryPolyline
 from particles import ContactLook, Facets, Grains, ParticleSystem
 from particles.beds import drop_height_of_facets

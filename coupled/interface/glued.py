@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, diags
 
-from coupled.couples import FacetCouples
 from coupled.errors import LeitoError
-from coupled.interface import Pushed, shares
+from coupled.interface.couples import FacetCouples
+from coupled.interface.door import Pushed, shares
 from meshes import BoundaryPolyline
 from particles import ContactLook, Grains, ParticleSystem
 from particles.beds import drop_height_on

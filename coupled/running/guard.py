@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from coupled import watchdog
 from coupled.errors import ExchangeError, LeitoError
 from coupled.model import Model, Snapshot
-from coupled.ranks import on_root, together
-from coupled.watchdog import Glance, Remedy, Sign
+from coupled.running import watchdog
+from coupled.running.ranks import on_root, together
+from coupled.running.watchdog import Glance, Remedy, Sign
 from particles import ParticleError
 from structure import StructureError
 

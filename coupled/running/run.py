@@ -14,26 +14,26 @@ from typing import Any
 from mpi4py import MPI
 
 from coupled import bed as beds
-from coupled import cautions
 from coupled.build import Built, build
-from coupled.contact_report import contact_sentences
 from coupled.errors import Interrupted
-from coupled.guard import LOOK, Failed, Guard
-from coupled.interrupt import Stop
-from coupled.observe import Observation, observe
 from coupled.output import checkpoint
 from coupled.output.folder import BEFORE_FAILURE, SUMMARY, RunFolder, open_folder
 from coupled.output.lock import only_process
 from coupled.output.provenance import write_json
-from coupled.progress import RunProgress
-from coupled.ranks import LeaveTogether, on_root, root_alone, together
-from coupled.record import Record
-from coupled.remedy import remedy
+from coupled.report import cautions
+from coupled.report.contact import contact_sentences
+from coupled.report.summary import summarise, tell
+from coupled.running.guard import LOOK, Failed, Guard
+from coupled.running.interrupt import Stop
+from coupled.running.observe import Observation, observe
+from coupled.running.progress import RunProgress
+from coupled.running.ranks import LeaveTogether, on_root, root_alone, together
+from coupled.running.record import Record
+from coupled.running.remedy import remedy
+from coupled.running.schedule import Events, Every
+from coupled.running.watchdog import Glance, Unstable
 from coupled.scene import Scene
-from coupled.schedule import Events, Every
 from coupled.step import with_step
-from coupled.summary import summarise, tell
-from coupled.watchdog import Glance, Unstable
 from particles.beds import rest_ratio
 
 
@@ -207,7 +207,7 @@ class Run:
         peaks = record.peaks | {"particle_steps": free * model.steps_done * model.substeps}
         pictures = []
         if self.scene.output.figures:
-            from coupled.figures import plot_run  # matplotlib is not loaded for a run without figures
+            from coupled.report.figures import plot_run  # matplotlib is not loaded for a run without figures
 
             pictures = plot_run(self.folder.path)
         record.seconds["output"] += time.perf_counter() - started

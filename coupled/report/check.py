@@ -11,11 +11,11 @@ from typing import Any
 from mpi4py import MPI
 
 from coupled import bed as beds
-from coupled import cautions
 from coupled.build import Built, build, stable_ratio
-from coupled.contact_report import contact_rows
 from coupled.loads import load_rows
 from coupled.output.folder import SUMMARY
+from coupled.report import cautions
+from coupled.report.contact import contact_rows
 from coupled.scene import Scene, SettledGrains, Time
 from coupled.step import StepLimits, limits_of, with_step
 from particles.timestep import SOURCE_FACTOR

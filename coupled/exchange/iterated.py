@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coupled.errors import ExchangeError
-from coupled.secants import Secants
+from coupled.exchange.secants import Secants
 
 if TYPE_CHECKING:
     from coupled.model import Model, Snapshot

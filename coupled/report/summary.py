@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from coupled.build import Built, stable_ratio
-from coupled.contact_report import contact_numbers
-from coupled.observe import Observation
+from coupled.report.contact import contact_numbers
+from coupled.running.observe import Observation
 from coupled.step import limits_of
 
 

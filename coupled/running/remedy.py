@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from coupled.build import Built, stable_ratio
+from coupled.running.watchdog import Sign
 from coupled.step import StepLimits, limits_of
-from coupled.watchdog import Sign
 
 SHARE_OF_LIMIT = 0.8  # of the limit of the contacts, to be on the safe side of those to come
 WANTED_OVERLAP = 0.1  # of the smaller radius

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh_tridiagonal
 from scipy.sparse import csr_matrix
 
-from coupled.interface import Interface
+from coupled.interface.door import Interface
 from particles import ContactLook, ParticleSystem
 from structure import Structure
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from coupled.balance import Balance
-from coupled.glued import BODY
+from coupled.interface.glued import BODY
 from coupled.model import Model
 from particles import ContactLook
 from particles.spots import deepest_touch

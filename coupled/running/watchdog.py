@@ -8,10 +8,10 @@ from typing import Literal
 
 import numpy as np
 
-from coupled import culprit
 from coupled.balance import Balance, take_balance
 from coupled.errors import LeitoError
 from coupled.model import Model
+from coupled.running import culprit
 from particles import ContactLook, sharp_limit
 from particles.spots import alternating
 

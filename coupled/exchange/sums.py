@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from coupled.interface import Interface
+from coupled.interface.door import Interface
 from particles import ParticleSystem
 from structure import Structure
 

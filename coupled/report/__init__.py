@@ -1,0 +1,1 @@
+"""What is told of a scene and of a run: check, cautions, summary, figures."""
