@@ -39,7 +39,6 @@ def stand_in(monkeypatch):
         module = types.ModuleType(f"coupled.{name}")
         setattr(module, function, body)
         monkeypatch.setitem(sys.modules, f"coupled.{name}", module)
-        monkeypatch.setattr(coupled, name, module, raising=False)
 
     return put
 
@@ -79,7 +78,7 @@ def test_new_refuses_an_unknown_kind_and_a_missing_folder(leito, tmp_path):
 
 def test_run_hands_everything_over(leito, stand_in, tmp_path):
     calls = []
-    stand_in("run", "run_scene", lambda scene, **options: calls.append((scene, options)))
+    stand_in("running.run", "run_scene", lambda scene, **options: calls.append((scene, options)))
     code, *_ = leito(
         "run",
         "bed",
@@ -117,14 +116,14 @@ def test_run_hands_everything_over(leito, stand_in, tmp_path):
 def test_run_writes_to_the_folder_of_the_scene(arguments, folder, leito, stand_in, monkeypatch):
     monkeypatch.chdir(Path(coupled.__file__).parents[1])
     calls = []
-    stand_in("run", "run_scene", lambda scene, **options: calls.append(options["out"]))
+    stand_in("running.run", "run_scene", lambda scene, **options: calls.append(options["out"]))
     leito("run", *arguments)
     assert calls == [Path(folder)]
 
 
 def test_check_prints_its_rows(leito, stand_in):
     rows = [("time", "step", "4e-05 s"), ("coupling", "r", "0.3")]
-    stand_in("check", "check_scene", lambda scene: rows)
+    stand_in("report.check", "check_scene", lambda scene: rows)
     code, out, _ = leito("check", "elastic_tube")
     assert code == 0
     assert [line.split() for line in out.splitlines()[1:]] == [
@@ -134,7 +133,7 @@ def test_check_prints_its_rows(leito, stand_in):
 
 
 def test_plot_names_its_pictures(leito, stand_in, tmp_path):
-    stand_in("figures", "plot_run", lambda folder: [folder / "figures" / "final.png"])
+    stand_in("report.figures", "plot_run", lambda folder: [folder / "figures" / "final.png"])
     code, out, _ = leito("plot", tmp_path)
     assert code == 0 and out.strip().endswith("final.png")
     code, _, err = leito("plot", tmp_path / "absent")
@@ -160,14 +159,14 @@ def test_error_of_a_room_is_a_sentence_and_any_other_is_not_hidden(leito, stand_
     def refuse(scene, **options):
         raise room_error("the grains overlap; widen the box.")
 
-    stand_in("run", "run_scene", refuse)
+    stand_in("running.run", "run_scene", refuse)
     code, _, err = leito("run", "bed")
     assert (code, err) == (2, "leito: the grains overlap; widen the box.\n")
 
     def fail(scene, **options):
         raise ValueError("a bug of ours")
 
-    stand_in("run", "run_scene", fail)
+    stand_in("running.run", "run_scene", fail)
     monkeypatch.setattr(sys, "argv", ["leito", "run", "bed"])
     with pytest.raises(ValueError, match="a bug of ours"):
         cli.main()
@@ -177,7 +176,7 @@ def test_interrupted_run_says_how_to_go_on(leito, stand_in):
     def stop(scene, **options):
         raise Interrupted("stopped at 0.3 s; go on with --resume.")
 
-    stand_in("run", "run_scene", stop)
+    stand_in("running.run", "run_scene", stop)
     code, _, err = leito("run", "bed")
     assert code == 130 and "--resume" in err
 

@@ -29,7 +29,7 @@ WAYS: dict[str, tuple[list[str], int]] = {  # changes of the scene, kills
     "facets": (["interface.kind=facets"], 10),
     "sub-cycled": (["interface.substeps=2", "structure.density=10000"], 3),  # heavier, for the stiffness ratio
     "lagged": (["interface.exchange=lagged"], 3),
-    "iterated": (["interface.kind=facets", "interface.exchange=iterated", "interface.substeps=2"], 3),
+    "iterated on facets": (["interface.kind=facets", "interface.exchange=iterated", "interface.substeps=2"], 3),
     "corotational": (["interface.kind=facets", "structure.theory=corotational"], 3),
     "iterated": (["interface.exchange=iterated", "interface.substeps=2"], 2),
 }
