@@ -41,6 +41,8 @@ GOALS = {
     "second_start_seconds": Goal("s", 2.0, 1.0),
     "microseconds_per_step_25_discs": Goal("us", 3.0, 1.0),
     "structure_overhead": Goal("1", 0.1, 0.0),
+    "coupled_share_1_thread": Goal("1", 0.1, 0.05),
+    "coupled_share_2_threads": Goal("1", 0.1, 0.05),
 }
 
 FURTHER = {
@@ -51,6 +53,10 @@ FURTHER = {
     "first_start_seconds": "s",
     "peak_memory_1e6_discs": "MiB",
     "facets_over_glued": "1",
+    "coupled_share_facets": "1",
+    "coupled_grains_us": "us",
+    "coupled_structure_us": "us",
+    "coupled_exchange_us": "us",
     "ratio_liggghts": "1",
     "ratio_lammps_granular_2_ranks": "1",
     "ratio_lammps_hooke_history_2_ranks": "1",

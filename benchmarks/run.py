@@ -7,6 +7,7 @@ of the file as it is.
 
 import argparse
 
+import coupled_share
 import figure
 import interfaces
 import measures
@@ -31,6 +32,7 @@ def main() -> None:
         "start": processes.starts,
         "few": measures.few_discs,
         "interfaces": interfaces.interfaces,
+        "coupled": coupled_share.coupled,
         "structure": lambda: structure_steps.steps(steps),
         MILLION: lambda: structure_steps.million(steps),
     }

@@ -174,10 +174,12 @@ class Model:
 
     def _count(self) -> None:
         """Enter the window that has just ended."""
+        started = time.perf_counter()
         if self.particles is not None:
             places = self.structure.polyline.points + self._boundary
             parts = (self.interface, self.particles, self.structure)
             self.exchanged = self.exchanged.after_window(*parts, self.window * self.nodal_force, places)
+        self.seconds["exchange"] += time.perf_counter() - started
 
     def _take(self, pushed: Pushed) -> None:
         self.nodal_force, self.reaction = pushed

@@ -121,15 +121,16 @@ class GluedGrains:
 
     def move(self, particles: ParticleSystem, displacement: Floats, before: Floats, interval: float) -> None:
         own, goal = self._own(particles), self.places(displacement)
+        start = _centres(particles, own) if self._velocity is None else self.places(before)
         particles.steer(own, goal, interval, self.velocities((displacement - before) / interval))
         if self._turns(particles):
-            particles.grains.omega[own] = self._couples.spins(self.places(before), goal, interval)
+            particles.grains.omega[own] = self._couples.spins(start, goal, interval)
 
     def forces(self, particles: ParticleSystem) -> Pushed:
         own = self._own(particles)
         force, couples = particles.force_on(own), None
         if self._turns(particles):
-            couples = self._couples.now(particles.grains.torque[own], particles.grains.position[own])
+            couples = self._couples.now(particles.grains.torque[own], _centres(particles, own))
         return self._pushed(force, couples)
 
     def impulses(self, particles: ParticleSystem) -> Pushed:
@@ -170,6 +171,11 @@ class GluedGrains:
 
     def work(self, particles: ParticleSystem) -> float:
         return particles.work_by(self._own(particles))
+
+
+def _centres(particles: ParticleSystem, own: slice) -> Floats:
+    """Centres (k, 2) [m] of some grains alone: all of them would be a copy as long as the bed."""
+    return np.column_stack([particles.grains.x[own], particles.grains.y[own]])
 
 
 class _Seats(NamedTuple):

@@ -112,7 +112,7 @@ class Press:
         if len(seen) <= FEWEST:
             return math.inf
         series = np.diff(np.array(seen), axis=0)
-        left = 10 * ROUND_OFF / np.abs(series[:, 0]).max() if self.exchange == "iterated" else 0.0
+        left = 100 * ROUND_OFF / np.abs(series[:, 0]).max() if self.exchange == "iterated" else 0.0
         return spectral_radius(series, max(NOISE, left))
 
     def limit(self, low: float, high: float) -> float:
