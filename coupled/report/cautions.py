@@ -6,11 +6,13 @@ import math
 from collections.abc import Mapping
 
 from coupled.build import WARNED_SHARE, Built, stable_ratio
+from coupled.laws import interface_spring
 from coupled.loads import unresolved_schedules
 from coupled.scene import Scene
 from coupled.step import StepLimits, limits_of
 from structure import ElasticStructure, departures, unused_solver_options
 
+ENOUGH_DAMPING = 0.1  # of critical: with it no sub-cycled exchange of the map grows below its limit
 FEW_UNKNOWNS = 10_000  # up to here the lowest mode takes a fraction of a second
 INCOMPRESSIBLE = 0.45  # from here on stress at the nodes of standard cells, order 2 as well, is off by 20 % and more
 
@@ -45,7 +47,26 @@ def before(built: Built, limits: StepLimits | None = None) -> list[str]:
         said.append(f"no solver of this scene knows the PETSc option {', '.join(unused)}: look at its spelling")
     if scene.structure is not None:
         said += unresolved_schedules(scene.structure.loads, built.model.window)
-    return said + _locking(scene)
+    return said + _resonance(built) + _locking(scene)
+
+
+def _resonance(built: Built) -> list[str]:
+    """A sentence on windows too long for light grains without dashpots; numbers from docs/validation/stability.md."""
+    interface, system = built.scene.interface, built.model.particles
+    if interface is None or interface.exchange == "iterated" or interface.substeps == 1 or not built.stiffness_ratio:
+        return []
+    if system is None or not system.grains.n_free:
+        return []
+    k, c = interface_spring(built.scene, built.contact, system.grains, built.model.interface.radius)
+    mass = float(system.grains.mass[: system.grains.n_free].min())
+    half_period, damping = math.pi * math.sqrt(mass / (2.0 * k)), c / math.sqrt(2.0 * k * mass)
+    if built.model.window <= half_period or damping >= ENOUGH_DAMPING:
+        return []
+    return [
+        f"interface.substeps = {interface.substeps} makes windows of {built.model.window:.3g} s, longer than half a "
+        f"period of the lightest grain between two contacts ({half_period:.3g} s), and their damping is {damping:.2g} "
+        f'of critical: below {ENOUGH_DAMPING:g} windows may feed such grains; take fewer, or exchange = "iterated"'
+    ]
 
 
 def _overdamped(body: ElasticStructure) -> str:

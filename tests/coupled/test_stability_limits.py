@@ -3,11 +3,15 @@
 `make validate` measures the whole map with the same functions (`docs/validation/stability.md`).
 """
 
+from typing import Any
+
 import numpy as np
 import pytest
+from small_models import discs_on_free_beam
 from stability import Press, spectral_radius
 
 from coupled.exchange.limit import CONSERVING, CONSERVING_SUBCYCLED, ITERATED
+from coupled.report import cautions
 
 
 def test_eigenvalues_of_a_known_map_are_found() -> None:
@@ -56,3 +60,17 @@ def test_iterated_exchange_is_stable_up_to_the_limit_of_the_free_grains_themselv
 def test_sub_cycling_without_dashpots_feeds_light_free_grains_and_a_tenth_of_critical_damping_prevents_it() -> None:
     assert Press(substeps=20, mass_ratio=0.1).growth(0.5) > 1.1
     assert Press(substeps=20, mass_ratio=0.1, damping=0.1).growth(0.5) < 1.0
+
+
+def test_windows_too_long_for_undamped_grains_are_told_before_the_run() -> None:
+    """A disc of radius 0.01 m and 1000 kg/m3 between two springs of 1e6 N/m: half a period is 1.25 ms."""
+    half_period = np.pi * np.sqrt(np.pi * 0.01**2 * 1000.0 / 2e6)
+
+    def said(window: float, **interface: Any) -> str:
+        options = {"substeps": 10, "largest_stiffness_ratio": 1e3} | interface
+        built = discs_on_free_beam([[0.0, 0.05, 0.0, 0.0, 0.0]], step=window / 10, interface=options)
+        return " ".join(cautions.before(built))
+
+    assert "interface.substeps = 10" in said(1.01 * half_period) and "0.00125 s" in said(1.01 * half_period)
+    assert "interface.substeps" not in said(0.99 * half_period)
+    assert "interface.substeps" not in said(1.01 * half_period, exchange="iterated")
