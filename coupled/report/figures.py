@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,8 @@ from typing import Any
 import matplotlib
 
 matplotlib.use("Agg")  # no screen is needed
+# Debian's own matplotlib stands beside ours; nothing here has three axes.
+warnings.filterwarnings("ignore", message="Unable to import Axes3D")
 
 import matplotlib.pyplot as plt
 import numpy as np

@@ -11,6 +11,7 @@ from mpi4py import MPI
 
 Result = TypeVar("Result")
 PATIENCE = 20.0  # seconds in which the other ranks must have met the same error
+DELIVERY = 1.0  # seconds for the last words: mpirun may drop what is under way when it ends the ranks
 
 
 def on_root(comm: MPI.Intracomm, action: Callable[[], Result]) -> Result:
@@ -78,5 +79,6 @@ class LeaveTogether:
         while not arrived.Test():
             if time.monotonic() - begun > self._patience:
                 print(f"leito: rank {self._comm.rank}: {error or kind.__name__}", file=sys.stderr, flush=True)
+                time.sleep(DELIVERY)
                 self._comm.Abort(1)
             time.sleep(0.05)

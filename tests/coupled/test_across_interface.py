@@ -41,8 +41,9 @@ def test_momentum_is_kept(interface: str, exchange: str, body: str) -> None:
     """Before and after, whatever was underway between both halves of the step while they touched."""
     seen = of(interface, exchange, body)
     assert seen.work > 0.3 and seen.turned > 1e-4
-    # Round-off of the structure's equation: its internal forces, E u, are 1e4 times the contact forces.
-    assert np.abs(seen.drift[:2]).max() < 2e-12
+    # Round-off of the structure's equation: its internal forces, E u, are 1e4 times the contact forces, and a row of
+    # the stiffness sums 18 of them: 1e4 sqrt(18) eps = 9e-12.
+    assert np.abs(seen.drift[:2]).max() < 1e-11
 
 
 @pytest.mark.parametrize("body", ["corotational", "rigid"])
