@@ -176,9 +176,8 @@ class Model:
         """Enter the window that has just ended."""
         started = time.perf_counter()
         if self.particles is not None:
-            places = self.structure.polyline.points + self._boundary
             parts = (self.interface, self.particles, self.structure)
-            self.exchanged = self.exchanged.after_window(*parts, self.window * self.nodal_force, places)
+            self.exchanged = self.exchanged.after_window(*parts, self.window, self.nodal_force, self._boundary)
         self.seconds["exchange"] += time.perf_counter() - started
 
     def _take(self, pushed: Pushed) -> None:

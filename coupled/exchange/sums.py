@@ -49,17 +49,23 @@ class Exchanged(NamedTuple):
         interface: Interface,
         particles: ParticleSystem,
         structure: Structure,
-        nodal_impulse: Floats,
-        places: Floats,
+        interval: float,
+        force: Floats,
+        displacement: Floats,
     ) -> Exchanged:
-        """The sums after one more window, with impulses (n_b, 2) [N s/m] of the grains on nodes at `places` [m]."""
+        """The sums after one more window of `interval` [s].
+
+        force, displacement : (n_b, 2)
+            Of the grains on the boundary nodes [N/m], and of these nodes at the end of the interface's way [m].
+        """
         given, received = interface.work(particles), structure.boundary_work
         done, taken = given - self.given, received - self.received
         dropped = passed = 0.0
         if interface.drops_moment:
             dropped = interface.moment_dropped(particles)
+            places, impulse = structure.polyline.points + displacement, interval * force
             arm = places - places.mean(axis=0)
-            passed = float(arm[:, 0] @ nodal_impulse[:, 1] - arm[:, 1] @ nodal_impulse[:, 0])
+            passed = float(arm[:, 0] @ impulse[:, 1] - arm[:, 1] @ impulse[:, 0])
         return Exchanged(
             work=self.work + abs(done),
             worst_window=max(self.worst_window, abs(done + taken)),

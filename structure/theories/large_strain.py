@@ -10,16 +10,15 @@ from structure import compat
 from structure.discrete import DiscreteBody
 from structure.elements import ElementName, StandardElement
 from structure.errors import StructureError
-from structure.loads.vectors import LoadVectors
 from structure.material import PlaneStrain, Rayleigh, largest_principal_strain, von_mises
 from structure.results import StructurePeaks
 from structure.stress import by_name
-from structure.theories.corotational import no_statics
 from structure.theories.gradients import GradientProbe, green_lagrange, least_stretch, logarithmic
 from structure.theories.large_strain_step import LargeStrainStepper
+from structure.theories.turning import TurningTheory
 
 
-class LargeStrainTheory:
+class LargeStrainTheory(TurningTheory):
     """Plane strain, ``S = lam tr(E) 1 + 2 mu E`` with the Green-Lagrange strain E; see `Theory`.
 
     Any displacement and rotation. Stress in the outputs is Cauchy's, ``sigma = F S F^T/det F``,
@@ -29,6 +28,8 @@ class LargeStrainTheory:
     ``(lam + 2 mu) s (s^2 - 1)/2``, which has its peak at s = 0.577, and it does not keep cells from
     turning inside out. Standard elements only.
     """
+
+    name = "large_strain"
 
     def __init__(
         self,
@@ -49,10 +50,6 @@ class LargeStrainTheory:
         self.stepper = LargeStrainStepper(body, material, damping=damping, time_step=time_step)
         self._at_nodes: GradientProbe | None = None
         self._at_gauss: GradientProbe | None = None
-
-    def rotation(self) -> float:
-        """See `Theory`; whole turns counted."""
-        return self.stepper.turn
 
     def nodal_stress(self) -> dict[str, NDArray[np.float64]]:
         """See `Theory`; averages of each cell's own Cauchy stress and logarithmic strain."""
@@ -75,18 +72,6 @@ class LargeStrainTheory:
             strain=comm.allreduce(float(strain.max(initial=0.0)), op=MPI.MAX),
             compression=comm.allreduce(float((1.0 - least_stretch(gradient)).max(initial=0.0)), op=MPI.MAX),
         )
-
-    def static_displacement(self, loads: LoadVectors) -> NDArray[np.float64]:
-        """See `Theory`; refused."""
-        raise no_statics("large_strain")
-
-    def memory(self) -> dict[str, NDArray[np.float64]]:
-        """See `Theory`: the whole turns."""
-        return {"rotation": np.array(self.rotation())}
-
-    def recall(self, state: dict[str, NDArray[np.float64]]) -> None:
-        """See `Theory`."""
-        self.stepper.resume(float(state["rotation"]))
 
     def _cauchy(self, gradient: NDArray[np.float64]) -> NDArray[np.float64]:
         """Cauchy stress [Pa] (..., 4) as xx, yy, xy, zz of displacement gradients (..., 2, 2)."""
