@@ -11,13 +11,14 @@ from coupled.scene import Scene, dump_scene
 from particles.kernels.layout import GrainArrays, PairArrays, WallArrays
 
 BEDS = "beds"
+ASKED = frozenset({"quantities"})  # of a scene, which do not shape a bed
 
 
 def bed_folder(scene: Scene, runs: Path) -> Path:
     """Where the bed of a scene lives: named after the bed and a hash of all that shapes it, the layout included."""
     shaping = scene.bed.model_copy(update={"output": type(scene.bed.output)(), "title": "bed"})
     layout = " ".join(GrainArrays._fields + PairArrays._fields + WallArrays._fields)
-    digest = hashlib.sha256((dump_scene(shaping) + layout).encode()).hexdigest()[:10]
+    digest = hashlib.sha256((dump_scene(shaping, without=ASKED) + layout).encode()).hexdigest()[:10]
     return runs / BEDS / f"{Path(scene.grains.bed).stem}-{digest}"
 
 

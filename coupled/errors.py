@@ -30,5 +30,9 @@ class ExchangeError(LeitoError):
     """An exchange between grains and structure that does not converge."""
 
 
+class QuantityError(LeitoError):
+    """A quantity of interest that a run does not have: a depth never reached, a window after its end."""
+
+
 class Interrupted(LeitoError):
     """A run stopped by the user; the message says how to go on."""

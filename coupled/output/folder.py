@@ -22,7 +22,15 @@ OURS = (
     "log.txt", "frames", "figures",
 )  # fmt: skip
 # When a run is taken up again:
-FREE_TO_CHANGE = ("time.duration", "time.step", "interface.exchange", "output.", "title")
+FREE_TO_CHANGE = (
+    "time.duration",
+    "time.step",
+    "interface.exchange",
+    "output.",
+    "title",
+    "quantities",
+    "bed.quantities",
+)
 
 
 @dataclass(frozen=True)

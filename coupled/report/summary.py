@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from coupled.build import Built, stable_ratio
 from coupled.report.contact import contact_numbers
+from coupled.report.quantities import quantity_lines
 from coupled.running.observe import Observation
+from coupled.scene.quantities import Quantity
 from coupled.step import limits_of
 
 
@@ -82,8 +85,8 @@ def summarise(
 ADDED = ("network_dt_ratio", "interface_work", "moment_dropped_share", "stiffness_ratio_max")
 
 
-def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
-    """The lines printed at the end of a run, also of one that an earlier version made."""
+def tell(summary: dict[str, Any], pictures: list[Path], folder: Path, quantities: Sequence[Quantity] = ()) -> str:
+    """The lines printed at the end of a run, also of one that an earlier version made, and its quantities."""
     summary = dict.fromkeys(ADDED, 0.0) | summary
     wall, in_contact = summary["wall_seconds"], summary["network_dt_ratio"] > 0.0
     lines = [f"{summary['title']}: {summary['simulated_seconds']:g} s simulated in {wall:.1f} s"]
@@ -129,6 +132,7 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path) -> str:
             f"  iterations per step      {summary['exchange_iterations']:12.3g}       of the exchange; {unsettled} "
             "steps not settled" + (f", by {farthest:.1g} of the motion at most" if unsettled else "")
         )
+    lines += quantity_lines(quantities, summary.get("quantities", {}))
     parts = ", ".join(f"{name} {seconds:.1f}" for name, seconds in summary["wall_seconds_by_part"].items() if seconds)
     lines.append(f"  wall time [s]            {parts}")
     lines.append(f"  files in                 {folder}")

@@ -8,41 +8,13 @@ import numpy as np
 
 from coupled.balance import Balance, take_balance
 from coupled.model import Model
+from coupled.scene.history import unit_of
 from particles import ContactLook
-
-UNITS = {
-    "time": "s",
-    "applied_x": "N/m",
-    "applied_y": "N/m",
-    "reaction_x": "N/m",
-    "reaction_y": "N/m",
-    "centroid_x": "m",
-    "centroid_y": "m",
-    "rotation": "rad",
-    "max_von_mises": "Pa",
-    "max_strain": "-",
-    "local_rotation": "rad",
-    "compression": "-",
-    "contacts": "-",
-    "coordination": "-",
-    "deepest_overlap": "-",
-    "fastest_grain": "m/s",
-    "highest_grain": "m",
-    "ledger_error": "J/m",
-    "ledger_relative_error": "-",
-    "interface_residual": "J/m",
-    "interface_residual_window": "J/m",
-    "interface_work": "J/m",
-    "moment_dropped": "N m s/m",
-    "moment_dropped_share": "-",
-    "momentum_residual": "-",
-    "stiffness_ratio": "-",
-}
 
 
 @dataclass(frozen=True)
 class Observation:
-    """Numbers by name (units in `UNITS`; ledger lines are J/m), with what they came from."""
+    """Numbers by name (units by `coupled.scene.history.unit_of`), with what they came from."""
 
     numbers: dict[str, float]
     balance: Balance
@@ -50,7 +22,7 @@ class Observation:
 
     def row(self) -> dict[str, float]:
         """Numbers by name with unit, for the history."""
-        return {f"{name} [{UNITS.get(name, 'J/m')}]": value for name, value in self.numbers.items()}
+        return {f"{name} [{unit_of(name)}]": value for name, value in self.numbers.items()}
 
 
 def observe(model: Model, start: dict[str, float] | None) -> Observation:

@@ -20,6 +20,7 @@ from coupled.output import checkpoint
 from coupled.output.folder import BEFORE_FAILURE, SUMMARY, RunFolder, open_folder
 from coupled.output.lock import only_process
 from coupled.output.provenance import write_json
+from coupled.quantities import known_of
 from coupled.report import cautions
 from coupled.report.contact import contact_sentences
 from coupled.report.summary import summarise, tell
@@ -86,8 +87,7 @@ def _run(
     folder = on_root(comm, lambda: open_folder(out, scene, resume=resume, overwrite=overwrite))
     if on_root(comm, lambda: _finished(folder, scene)):
         if comm.rank == 0:
-            pictures = sorted((folder.path / "figures").glob("*.png"))
-            print(tell(json.loads(folder.file(SUMMARY).read_text()), pictures, folder.path))
+            _tell_again(folder, scene)
         return folder.path
     started = time.perf_counter()
     built = together(comm, lambda: build(scene, bed=settled, threads=threads, comm=comm))
@@ -212,11 +212,23 @@ class Run:
             pictures = plot_run(self.folder.path)
         record.seconds["output"] += time.perf_counter() - started
         summary = summarise(self.built, seen, record.first, peaks, record.seconds | model.seconds)
+        summary["quantities"], unknown = known_of(self.scene, self.folder.path)
+        for sentence in unknown:
+            record.log(f"note: {sentence}")
         write_json(self.folder.file(SUMMARY), summary)
         record.write_provenance()
-        text = tell(summary, pictures, self.folder.path)
+        text = tell(summary, pictures, self.folder.path, self.scene.quantities)
         record.log(text)
         print(text, flush=True)
+
+
+def _tell_again(folder: RunFolder, scene: Scene) -> None:
+    """Tell what a finished run came to, with the quantities that its scene asks for now."""
+    pictures = sorted((folder.path / "figures").glob("*.png"))
+    summary = json.loads(folder.file(SUMMARY).read_text())
+    summary["quantities"], _ = known_of(scene, folder.path)
+    write_json(folder.file(SUMMARY), summary)
+    print(tell(summary, pictures, folder.path, scene.quantities))
 
 
 def _events(scene: Scene, window: float, substeps: int, last: int) -> Events:

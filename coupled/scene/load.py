@@ -44,9 +44,9 @@ def load_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
     return _load(find_scene(path), [parse_override(text) for text in overrides], ())
 
 
-def dump_scene(scene: Scene) -> str:
-    """Return the scene as TOML with every default written; `load_scene` reads it back equal."""
-    return tomli_w.dumps(scene.model_dump(mode="json", exclude_none=True))
+def dump_scene(scene: Scene, *, without: frozenset[str] = frozenset()) -> str:
+    """Return the scene as TOML with every default written; `load_scene` reads it back equal if no table is left out."""
+    return tomli_w.dumps(scene.model_dump(mode="json", exclude_none=True, exclude=set(without)))
 
 
 Override = tuple[list[str], Any]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
-from coupled.scene.types import Flag, Number, Positive, Table, Vector
+from coupled.scene.types import Flag, Number, Positive, Table, Vector, by_kind
 
 
 class Constant(Table):
@@ -59,30 +58,12 @@ class Rows(Table):
     )
 
 
-def _kind_in(allowed: tuple[str, ...]) -> Callable[[Any], str | None]:
-    def tag(data: Any) -> str | None:
-        kind = data.get("kind") if isinstance(data, dict) else getattr(data, "kind", None)
-        return f"<{kind}>" if kind in allowed else None
-
-    return tag
-
-
-def _by_kind(*allowed: str) -> Discriminator:
-    """Choose a table by its kind, which must be one of those allowed."""
-    return Discriminator(
-        _kind_in(allowed),
-        custom_error_type="unknown_kind",
-        custom_error_message="unknown kind",
-        custom_error_context={"allowed": list(allowed)},
-    )
-
-
 Schedule = Annotated[
     Annotated[Constant, Tag("<constant>")]
     | Annotated[Ramp, Tag("<ramp>")]
     | Annotated[Sine, Tag("<sine>")]
     | Annotated[Rows, Tag("<table>")],
-    _by_kind("constant", "ramp", "sine", "table"),
+    by_kind("constant", "ramp", "sine", "table"),
 ]
 
 
@@ -149,5 +130,5 @@ Load = Annotated[
     | Annotated[PressureLoad, Tag("<pressure>")]
     | Annotated[BodyLoad, Tag("<body>")]
     | Annotated[PointLoad, Tag("<point>")],
-    _by_kind("boundary", "pressure", "body", "point"),
+    by_kind("boundary", "pressure", "body", "point"),
 ]

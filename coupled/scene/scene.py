@@ -10,6 +10,7 @@ from coupled.scene.contact import Contact, Damping
 from coupled.scene.grains import AnyGrains, Box, Grains
 from coupled.scene.interface import AnyRow, Interface
 from coupled.scene.output import Output, Time
+from coupled.scene.quantities import Quantity
 from coupled.scene.rules import check_rules
 from coupled.scene.structure import Structure
 from coupled.scene.types import Table, Vector
@@ -34,6 +35,7 @@ class Scene(Table):
     interface: Interface | None = Field(None, description="glued grains or facets, where grains meet the structure")
     rows: tuple[AnyRow, ...] = Field((), description="rows of fixed grains")
     output: Output = Field(default_factory=Output, description="what is written")
+    quantities: tuple[Quantity, ...] = Field((), description="numbers of interest, told at the end of a run")
     bed: Scene | None = Field(
         None, description="the scene that grains.bed names, whole; read from its file when absent"
     )

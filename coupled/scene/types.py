@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, Strict, model_validator
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Strict, model_validator
 from pydantic_core import PydanticCustomError
 
 Number = Annotated[float, Strict()]
@@ -42,3 +42,28 @@ class Table(BaseModel):
                     {"unknown": unknown[0], "allowed": allowed, "beside": cls.beside},
                 )
         return data
+
+
+def by_kind(*alone: str, **groups: tuple[str, ...]) -> Discriminator:
+    """Choose a table by its kind, which must be one of those allowed.
+
+    Parameters
+    ----------
+    alone
+        Kinds with a table of their own, whose tag is ``"<kind>"``.
+    groups
+        Kinds that share a table, by the word in its tag.
+    """
+    tags = {kind: f"<{kind}>" for kind in alone}
+    tags |= {kind: f"<{group}>" for group, kinds in groups.items() for kind in kinds}
+
+    def tag(data: Any) -> str | None:
+        kind = data.get("kind") if isinstance(data, dict) else getattr(data, "kind", None)
+        return tags.get(kind) if isinstance(kind, str) else None
+
+    return Discriminator(
+        tag,
+        custom_error_type="unknown_kind",
+        custom_error_message="unknown kind",
+        custom_error_context={"allowed": list(tags)},
+    )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from coupled.scene.rules.contact import check_contact
 from coupled.scene.rules.grains import check_grains
 from coupled.scene.rules.interface import check_interface, check_rows
+from coupled.scene.rules.quantities import check_quantities
 from coupled.scene.rules.stability import check_step
 from coupled.scene.rules.structure import check_structure
 from coupled.scene.rules.whole import check_output, check_whole
@@ -31,3 +32,4 @@ def check_rules(scene: Scene) -> None:
     check_rows(scene)
     check_step(scene)
     check_output(scene)
+    check_quantities(scene)

@@ -1,0 +1,150 @@
+"""The value of a quantity of interest, from the history and the last state of a run."""
+
+from __future__ import annotations
+
+import math
+from functools import singledispatch
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coupled.errors import QuantityError
+from coupled.output import checkpoint, history
+from coupled.quantities.curve import Curve
+from coupled.quantities.frequency import frequency_of
+from coupled.quantities.packing import packing_fraction
+from coupled.quantities.surface import mean_height, slope_angle
+from coupled.scene import Scene, load_scene
+from coupled.scene.quantities import ColumnOverTime, ColumnValue, ColumnWhen, Packing, Quantity, Surface
+
+SCENE, SUMMARY = "scene.toml", "summary.json"
+Floats = NDArray[np.float64]
+
+
+def evaluate(quantity: Quantity, folder: Path) -> float:
+    """Value of a quantity in a finished run.
+
+    Parameters
+    ----------
+    quantity : Quantity
+        A table of a scene's [[quantities]].
+    folder : Path
+        Of the run.
+
+    Raises
+    ------
+    QuantityError
+        If the run does not have it: it is not finished, a value is never reached, a time is outside the run, the
+        number is not finite.
+    """
+    if not (Path(folder) / SUMMARY).exists():
+        raise QuantityError(f"{quantity.name} of {folder} is not known: there is no finished run in it; go on with it")
+    return _known(quantity, Path(folder))
+
+
+def _known(quantity: Quantity, folder: Path) -> float:
+    """Value of a quantity in a run that has come to its end, whose summary may not be written yet."""
+    try:
+        value = _value(quantity, folder)
+    except (QuantityError, OSError) as error:
+        raise QuantityError(f"{quantity.name} of {folder} is not known: {error}") from None
+    if not math.isfinite(value):
+        raise QuantityError(f"{quantity.name} of {folder} is not known: its value is {value}")
+    return value
+
+
+def known_of(scene: Scene, folder: Path) -> tuple[dict[str, float | None], list[str]]:
+    """Values of all quantities of a scene by name, None where one is not known, and the sentences that say why."""
+    values: dict[str, float | None] = {}
+    sentences = []
+    for quantity in scene.quantities:
+        try:
+            values[quantity.name] = _known(quantity, folder)
+        except QuantityError as error:
+            values[quantity.name] = None
+            sentences.append(str(error))
+    return values, sentences
+
+
+@singledispatch
+def _value(quantity: object, folder: Path) -> float:
+    raise TypeError(f"{type(quantity).__name__} is no quantity")
+
+
+@_value.register
+def _(quantity: ColumnValue, folder: Path) -> float:
+    curve = _curve(folder, quantity.column)
+    return curve.at(float(curve.time[-1]) if quantity.time is None else quantity.time)
+
+
+@_value.register
+def _(quantity: ColumnOverTime, folder: Path) -> float:
+    part = _curve(folder, quantity.column).between(quantity.start, quantity.end)
+    match quantity.kind:
+        case "mean":
+            return part.mean()
+        case "min":
+            return float(part.value.min())
+        case "max":
+            return float(part.value.max())
+        case "drop":
+            return float(part.value[0] - part.value[-1])
+        case "rise":
+            return float(part.value[-1] - part.value[0])
+        case "frequency":
+            return frequency_of(part.time, part.value, part.name)
+
+
+@_value.register
+def _(quantity: ColumnWhen, folder: Path) -> float:
+    other = _curve(folder, quantity.other)
+    target = quantity.reaches
+    if target is None:
+        assert quantity.changes_by is not None, "the rules of the scene demand one of them"
+        target = float(other.value[0]) + quantity.changes_by
+    return _curve(folder, quantity.column).at(other.first_time_at(target))
+
+
+@_value.register
+def _(quantity: Surface, folder: Path) -> float:
+    x, y, radius = _free_grains(folder)
+    law = mean_height if quantity.kind == "surface_height" else slope_angle
+    return law(x, y, radius, *_ends(quantity, folder))
+
+
+@_value.register
+def _(quantity: Packing, folder: Path) -> float:
+    x, y, radius = _free_grains(folder)
+    left, right = _ends(quantity, folder)
+    return packing_fraction(x, y, radius, (left, right), (quantity.bottom, quantity.top))
+
+
+def _curve(folder: Path, column: str) -> Curve:
+    columns = history.read_history(folder / history.NAME)
+    if column not in columns:
+        raise QuantityError(f"{history.NAME} has no column {column}")
+    if len(columns["time"]) == 0:
+        raise QuantityError(f"{history.NAME} has no rows")
+    value = columns[column]
+    if not np.isfinite(value).all():
+        raise QuantityError(f"the column {column} has a value that is no finite number")
+    return Curve(name=column, time=columns["time"], value=value)
+
+
+def _free_grains(folder: Path) -> tuple[Floats, Floats, Floats]:
+    """Places and radii [m] of the free grains at the end of a run."""
+    saved, _ = checkpoint.load(folder / checkpoint.NAME)
+    count = int(saved["particles.grains.n_free"])
+    x, y, radius = (saved[f"particles.grains.{name}"][:count] for name in ("x", "y", "radius"))
+    return x, y, radius
+
+
+def _ends(quantity: Surface | Packing, folder: Path) -> tuple[float, float]:
+    """Left and right end [m], from the box of the run where they are not given."""
+    left, right = quantity.left, quantity.right
+    if left is None or right is None:
+        box = load_scene(folder / SCENE).box
+        assert box is not None, "the rules of the scene demand ends or a box"
+        left, right = 0.0 if left is None else left, box.width if right is None else right
+    return left, right
