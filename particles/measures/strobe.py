@@ -1,0 +1,80 @@
+"""One look per period of the shaking: heights at a phase, rises from one to the next, the portrait over the phase."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from particles.errors import ParticleError, require
+from particles.state import Floats
+
+
+class Strobe(NamedTuple):
+    """Values (k,) at one phase of successive periods, their times (k,) [s], and the changes (k - 1,) between them."""
+
+    time: Floats
+    value: Floats
+    rise: Floats
+
+
+def strobe(time: Floats, value: Floats, *, period: float, start: float = 0.0, phase: float = 0.0) -> Strobe:
+    """A quantity at the times ``start + (j + phase) period`` within the record, interpolated linearly between rows.
+
+    Parameters
+    ----------
+    time, value : (n,)
+        Rising times [s] and the quantity then, e.g. a height [m].
+    period, start : float
+        Of the shaking [s].
+    phase : float
+        Within the period, 0 to 1.
+
+    Notes
+    -----
+    Where the interval of the rows divides the period, interpolation makes the same error in every period and the
+    rises have none.
+
+    Raises
+    ------
+    ParticleError
+        If the record holds fewer than two such times.
+    """
+    require("period", period, above=0.0)
+    require("start", start)
+    first = math.ceil((time[0] - start) / period - phase - 1e-9) if len(time) else 0
+    last = math.floor((time[-1] - start) / period - phase + 1e-9) if len(time) else -1
+    first = max(first, 0)
+    if last - first < 1:
+        length = time[-1] - time[0] if len(time) else 0.0
+        raise ParticleError(
+            f"a record of {length:g} s with shaking from {start:g} s on holds no whole "
+            f"period of {period:g} s: run longer"
+        )
+    at = start + (np.arange(first, last + 1) + phase) * period
+    found = np.interp(at, time, value)
+    return Strobe(at, found, np.diff(found))
+
+
+class Portrait(NamedTuple):
+    """Points over the phase: phase (n,) 0 to 1, the quantity (n,), its mean and standard deviation per bin (k,)."""
+
+    phase: Floats
+    value: Floats
+    mean: Floats
+    deviation: Floats
+
+
+def portrait(time: Floats, value: ArrayLike, *, period: float, start: float = 0.0, bins: int = 32) -> Portrait:
+    """A quantity over the phase of the shaking, from `start` [s] on; bins of equal width from phase 0 on."""
+    require("period", period, above=0.0)
+    require("bins", bins, at_least=1)
+    on = time >= start
+    phase, kept = ((time[on] - start) / period) % 1.0, np.asarray(value, float)[on]
+    bin_of = np.minimum((phase * bins).astype(np.int64), bins - 1)
+    count = np.bincount(bin_of, minlength=bins)
+    held = count > 0
+    mean, deviation = np.full(bins, np.nan), np.full(bins, np.nan)
+    mean[held] = np.bincount(bin_of, kept, minlength=bins)[held] / count[held]
+    deviation[held] = np.sqrt(np.bincount(bin_of, (kept - mean[bin_of]) ** 2, minlength=bins)[held] / count[held])
+    return Portrait(phase, kept, mean, deviation)
