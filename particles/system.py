@@ -117,6 +117,8 @@ class ParticleSystem:
             raise ParticleError(f"scheme {scheme!r} must be one of {', '.join(SCHEMES)}")
         self.scheme = scheme
         grains.keep_leads(scheme == "velocity_verlet")
+        if not contact.spins:
+            grains.torque[:] = 0.0  # no step writes it
         self.gravity = np.array(gravity, float)
         self.damping = damping
         self.threads = use_threads(threads)

@@ -14,7 +14,7 @@ from particles.kernels.motion import add_incoming, drift, kick, prescribed_work
 @kernel
 def block_forces(b, grains, pairs, walls, facets, normal, tangential, rolling, lead, ledger, dt):
     laws = Laws(normal, tangential, rolling)  # numba's threads take tuples, but no tuples of tuples
-    clear_forces(b, grains)
+    clear_forces(b, grains, present(tangential))
     pair_forces(b, grains, pairs, laws, lead, ledger, dt)
     wall_forces(b, grains, walls, laws, lead, ledger, dt)
     facet_forces(b, grains, facets, laws, lead, ledger, dt)

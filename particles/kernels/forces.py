@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from particles.kernels.jit import kernel
+from particles.kernels.jit import inner_kernel, kernel
 from particles.kernels.laws.materials import of_pair
 from particles.kernels.laws.response import Meeting, Now
 from particles.kernels.laws.rolling import turns_dashpot, turns_spring
@@ -16,12 +16,21 @@ from particles.kernels.touch import NOTHING_LOST, Memory, add_losses, touch
 
 
 @kernel
-def clear_forces(b, grains):
+def clear_forces(b, grains, spins):
     fx, fy, torque = grains.fx, grains.fy, grains.torque
     for i in range(np.uint64(grains.block_start[b]), np.uint64(grains.block_start[b + 1])):
         fx[i] = 0.0
         fy[i] = 0.0
-        torque[i] = 0.0
+        if spins:
+            torque[i] = 0.0
+
+
+@inner_kernel
+def push(response, nx, ny, spins):
+    """Force on i. Without friction nothing is added: the compiler may not leave out a sum with a computed zero."""
+    if spins:
+        return -response.f_n * nx - response.f_t * ny, -response.f_n * ny + response.f_t * nx
+    return -response.f_n * nx, -response.f_n * ny
 
 
 @kernel
@@ -89,8 +98,7 @@ def pair_forces(b, grains, pairs, laws, lead, ledger, dt):
             dash_n[k], dash_t[k] = response.dash_n, response.dash_t
         if damps:
             dash_r[k] = response.dash_r
-        px = -response.f_n * nx - response.f_t * ny
-        py = -response.f_n * ny + response.f_t * nx
+        px, py = push(response, nx, ny, spins)
         tj = arm_j * response.f_t - response.m_t
         fx[i] += px
         fy[i] += py
@@ -159,11 +167,11 @@ def wall_forces(b, grains, walls, laws, lead, ledger, dt):
             dash_n[k], dash_t[k] = response.dash_n, response.dash_t
         if damps:
             dash_r[k] = response.dash_r
-        fx = -response.f_n * nx - response.f_t * ny
-        fy = -response.f_n * ny + response.f_t * nx
+        fx, fy = push(response, nx, ny, spins)
         grains.fx[i] += fx
         grains.fy[i] += fy
-        grains.torque[i] += arm * response.f_t + response.m_t
+        if spins:
+            grains.torque[i] += arm * response.f_t + response.m_t
         force[b, w, 0] -= fx
         force[b, w, 1] -= fy
     wall_work(b, walls, ledger, dt)

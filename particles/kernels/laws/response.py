@@ -5,7 +5,13 @@ from typing import Any, NamedTuple
 from particles.kernels.jit import inner_kernel, rarely
 from particles.kernels.laws.normal import normal_force, normal_stiffness
 from particles.kernels.laws.rolling import rolling_moment, rolling_slip_energy, rolling_stiffness, rolling_trial
-from particles.kernels.laws.tangential import slip_energy, tangential_force, tangential_stiffness, tangential_trial
+from particles.kernels.laws.tangential import (
+    present,
+    slip_energy,
+    tangential_force,
+    tangential_stiffness,
+    tangential_trial,
+)
 
 
 class Laws(NamedTuple):
@@ -74,7 +80,9 @@ def respond(laws, meeting, now, f_old, m_old, dt):
     """A touching pair."""
     f_n, dash_n = normal_force(laws.normal, meeting, now.v_n)
     k_t, k_r, k_before = shear_stiffnesses(laws, meeting)
-    held = time_in_contact(meeting.delta, meeting.v_n, dt)
+    held = dt
+    if present(laws.tangential):  # nothing is stored without: spares a call that the compiler may not leave out
+        held = time_in_contact(meeting.delta, meeting.v_n, dt)
     trial_t = tangential_trial(laws.tangential, f_old, meeting.v_t * held, k_t, k_before)
     trial_r = rolling_trial(laws.rolling, m_old, meeting.omega_r * held, k_r)
     f, f_t = tangential_force(laws.tangential, trial_t, f_n, now.v_t, k_t, meeting.inverse_mass)
