@@ -188,6 +188,7 @@ def _structure(scene: Scene, mesh: meshes.StructureMesh, centroid: tuple[float, 
         element=table.element,
         theory=table.theory,
     )
+    body.require_resolved()
     if table.initial is not None:
         body.release_from_mode(table.initial.mode, table.initial.amplitude)
     return body

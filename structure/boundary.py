@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-from structure.errors import StructureError
+from structure.errors import StepError, StructureError
 from structure.nodes import NodeMap
 
 
@@ -33,6 +35,38 @@ def agreed_force(force: NDArray[np.float64], shape: tuple[int, ...], comm: MPI.I
     if packet[-1] != 0.0:
         raise comm.bcast(None, root=0)
     return packet[:-1].reshape(shape)
+
+
+def require_finite(works: float, force: NDArray[np.float64], time: float, time_step: float) -> None:
+    """Refuse to go on after a step whose works are none, whatever made them so.
+
+    Parameters
+    ----------
+    works : float
+        Sum of the works [J/m] of forces over the motion of the step, or of all steps: not finite as soon as a force
+        or a displacement of the boundary is not.
+    force : (n_b, 2)
+        Nodal forces of the step [N/m].
+    time, time_step : float
+        End and length of the step [s].
+
+    Raises
+    ------
+    StepError
+    """
+    if math.isfinite(works):
+        return
+    lost = np.argwhere(~np.isfinite(force))
+    if len(lost):
+        node = int(lost[0, 0])
+        raise StepError(
+            f"t = {time:g} s: the force on boundary node {node} is ({force[node, 0]:g}, {force[node, 1]:g}) N/m: give "
+            "finite numbers; if grains have made it, use a smaller time step"
+        )
+    raise StepError(
+        f"t = {time:g} s: the motion of the structure has left the finite numbers in a step of {time_step:g} s: its "
+        "loads are too large or its numbers too far apart; change them, or take a smaller step"
+    )
 
 
 def withhold_force(error: Exception, shape: tuple[int, ...], comm: MPI.Intracomm) -> None:

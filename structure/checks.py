@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -40,3 +40,13 @@ def schedule(value: object) -> None:
             f"schedule = {value!r} is not known: use a Constant, a Ramp, a Sine, a Table, or what has factor(time), "
             "constant_from and largest"
         )
+
+
+def state_of_this_kind(given: Collection[str], own: Collection[str]) -> None:
+    """Refuse the arrays, by name, of a state that a body of another kind, theory or scheme has saved."""
+    for problem, names in (("lacks", set(own) - set(given)), ("has", set(given) - set(own))):
+        if names:
+            raise StructureError(
+                f"state {problem} {sorted(names)[0]!r}: it is that of another theory, scheme or kind of structure; restore "
+                "it into the kind that has saved it"
+            )

@@ -10,7 +10,7 @@ from petsc4py import PETSc
 
 from meshes import StructureMesh
 from structure import checks, modes
-from structure.boundary import agreed_force, boundary_exchange
+from structure.boundary import agreed_force, boundary_exchange, require_finite
 from structure.discrete import DiscreteBody
 from structure.elements import ElementName
 from structure.errors import StepError, StructureError
@@ -128,9 +128,21 @@ class ElasticStructure(Rewinding):
         self._external = self._loads.at(0.0, stepper.displacement)
         stepper.force[:] = self._external
         self._force = agreed_force(boundary_force, self.polyline.points.shape, self.comm)
+        require_finite(float(self._force.sum()), self._force, 0.0, self.time_step)
         self._exchange.add(self._force, stepper.force)
         stepper.start()
         self._read_boundary()
+
+    def require_resolved(self) -> None:
+        """Refuse a time step whose round-off moves the body as a whole (`round_off`).
+
+        `advance` does not ask: who looks at stiff modes alone may take such a step.
+
+        Raises
+        ------
+        StructureError
+        """
+        self._stepper.require_resolved()
 
     def begin_under(self, boundary_force: NDArray[np.float64]) -> None:
         """Start anew at t = 0 from the present shape and motion, under nodal forces (n_b, 2) [N/m]."""
@@ -168,9 +180,11 @@ class ElasticStructure(Rewinding):
         try:
             stepper.step()
         except StepError as failed:
+            require_finite(float(self._force.sum()), self._force, self.time, self.time_step)
             raise StepError(f"t = {self.time:g} s: {failed}") from None
         if not self._ledger:
             self._read_boundary()
+            require_finite(float(self.boundary_displacement[0, 0]), self._force, self.time, self.time_step)
             return
         mean = before if self._external is before else (before + self._external) / 2
         shares = (stepper.loss_of_step(), float(mean.dot(stepper.increment)))
@@ -181,6 +195,7 @@ class ElasticStructure(Rewinding):
         self._scheme_loss += sum(by_scheme)
         self._external_work += work
         self._boundary_work += 0.5 * float(np.vdot(old_force + self._force, moved))
+        require_finite(self._external_work + self._boundary_work, self._force, self.time, self.time_step)
 
     def predict(self, interval: float, order: int = 2) -> NDArray[np.float64]:
         """Boundary displacement (n_b, 2) [m] after `interval` [s]: ``u + dt v (+ dt^2 a/2)``."""
@@ -280,6 +295,7 @@ class ElasticStructure(Rewinding):
     def restore(self, state: dict[str, NDArray[np.float64]]) -> None:
         """Take up a `state` of the same mesh, time step and loads; rank 0's counts."""
         state = self.comm.bcast(state, root=0)
+        checks.state_of_this_kind(state, self.state())
         for name in STATE_FIELDS:
             given = self._nodal(name, state[name])
             getattr(self._stepper, name)[:] = self._body.nodes.share(given)

@@ -52,11 +52,13 @@ def elastic_modes(
     solver.solve()
     if solver.getConverged() < count:
         raise StructureError(f"only {solver.getConverged()} of {count} modes converged: ask for fewer")
-    vector = stiffness.createVecRight()
+    vector, rigid = stiffness.createVecRight(), rigid_motions(body)
     pairs = []
     for k in range(count):
         square = solver.getEigenpair(k, vector).real
-        shape = body.nodes.gather(vector.array)
+        # the eigensolver leaves some where the numbers of the mass are far from 1
+        rigid_share = body.totals(rigid @ body.weigh(vector.array))
+        shape = body.nodes.gather(vector.array - rigid_share @ rigid)
         shape /= np.hypot(*shape.T).max()
         largest = np.argmax(np.abs(shape) > (1 - 1e-6) * np.abs(shape).max())
         pairs.append((np.sqrt(square) / (2 * np.pi), shape * np.sign(shape.flat[largest])))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from meshes import StructureMesh
 from structure import checks
-from structure.boundary import agreed_force
+from structure.boundary import agreed_force, require_finite
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
 from structure.loads.load import Load
@@ -23,6 +23,7 @@ from structure.rewinding import Rewinding
 from structure.rigid.motion import NO_STRESS, RigidMotion, rigid_fields
 
 SWEEPS = 100
+MOST_TURNED = 1e6  # rad within a step: far beyond any rule's meaning, and the sine of more is round-off
 
 
 class FreeRigid(Rewinding):
@@ -92,6 +93,7 @@ class FreeRigid(Rewinding):
         if boundary_force is None:
             boundary_force = np.zeros_like(self._arms)
         self._force = agreed_force(boundary_force, self._arms.shape, self.comm)
+        require_finite(float(self._force.sum()), self._force, 0.0, self.time_step)
         self._motion = RigidMotion(
             shift=np.zeros(2),
             angle=angle,
@@ -126,12 +128,14 @@ class FreeRigid(Rewinding):
         force = agreed_force(boundary_force, self._arms.shape, self.comm)
         self._steps += 1
         external, boundary = self._external_at(self.time), _resultants(self._arms, force)
+        require_finite(float(boundary.sum()), force, self.time, self.time_step)
         wrench = self._following.at(self.time)
         external_mean = (self._external + external) / 2
         boundary_mean = (self._boundary + boundary) / 2
         moved, after, following_work = self._step(external_mean + boundary_mean, wrench)
         self._external_work += float(moved @ external_mean) + following_work
         self._boundary_work += float(moved @ boundary_mean)
+        require_finite(self._external_work + self._boundary_work, force, self.time, self.time_step)
         self._force, self._external, self._boundary, self._wrench = force, external, boundary, wrench
         self._settle(after)
 
@@ -200,6 +204,7 @@ class FreeRigid(Rewinding):
     def restore(self, state: dict[str, NDArray[np.float64]]) -> None:
         """Take up a `state` of the same mesh, time step and loads; rank 0's counts."""
         state = self.comm.bcast(state, root=0)
+        checks.state_of_this_kind(state, self.state())
         motion = np.array(state["motion"], dtype=float)
         self._force = np.array(state["boundary_force"])
         self._external_work, self._boundary_work = map(float, state["sums"])
@@ -247,6 +252,8 @@ class FreeRigid(Rewinding):
             chord_ratio = math.sin(turn / 2) / (turn / 2) if turn else 1.0
             torque = chord_ratio * _torque(forces, now.angle + turn / 2) + moment
             turn = free + dt**2 / (2 * self.inertia) * torque
+            if not abs(turn) < MOST_TURNED:
+                break
             if abs(turn - before) <= 4 * sys.float_info.epsilon * abs(turn):
                 return turn
         raise StructureError(

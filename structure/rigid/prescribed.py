@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshes import StructureMesh
 from structure import checks
-from structure.boundary import agreed_force
+from structure.boundary import agreed_force, require_finite
 from structure.discrete import DiscreteBody
 from structure.errors import StructureError
 from structure.results import StructureEnergies, StructureFields, StructurePeaks
@@ -70,6 +70,7 @@ class PrescribedRigid(Rewinding):
     def begin_under(self, boundary_force: NDArray[np.float64]) -> None:
         """Account for nodal forces (n_b, 2) [N/m] from t = 0 on."""
         self._force = agreed_force(boundary_force, self._force.shape, self.comm)
+        require_finite(float(self._force.sum()), self._force, 0.0, self.time_step)
 
     def acceleration_by(self, boundary_force: NDArray[np.float64]) -> NDArray[np.float64]:
         """Zero (n_b, 2): no force moves a prescribed body."""
@@ -86,6 +87,7 @@ class PrescribedRigid(Rewinding):
         self._boundary_work += work
         self._drive_work += self._kinetic() - kinetic - work
         self._force = force
+        require_finite(self._drive_work, force, self.time, self.time_step)
 
     def predict(self, interval: float, order: int = 2) -> NDArray[np.float64]:
         """Boundary displacement (n_b, 2) [m] after `interval` [s]: the path itself."""
@@ -141,6 +143,7 @@ class PrescribedRigid(Rewinding):
     def restore(self, state: dict[str, NDArray[np.float64]]) -> None:
         """Take up a `state` of the same path and time step; rank 0's counts."""
         state = self.comm.bcast(state, root=0)
+        checks.state_of_this_kind(state, self.state())
         self._force = np.array(state["boundary_force"])
         self._drive_work, self._boundary_work = map(float, state["sums"])
         self._steps = int(state["steps"])

@@ -7,6 +7,7 @@ with the prefix ``leito_`` for steps and masses, ``leito_statics_`` for statics,
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -27,6 +28,7 @@ INCOMPLETE_UP_TO = 500.0  # the same ratio, up to which incomplete Cholesky beat
 RESIDUAL = 1e-12  # of iterative solves, over the right-hand side: what ranks differ by, and the ledger's noise
 ANY = 1e300  # growth of a residual: a first guess may be far off where loads vanish at once
 FACTOR_BYTES = 0.55  # of a factor, per entry of the matrix and binary logarithm of the unknowns, times 12
+SMALLEST_PIVOT = sys.float_info.epsilon**2  # over the largest number on the diagonal; PETSc's own is absolute, 2e-14
 SHARE_OF_MEMORY = 0.7  # that a factor may take of what is available
 
 
@@ -87,6 +89,7 @@ def configure(solver: PETSc.KSP, matrix: PETSc.Mat) -> None:
         preconditioner.setFactorSolverType("mumps")
     else:
         preconditioner.setFactorSolverType("petsc")
+        preconditioner.setFactorPivot(SMALLEST_PIVOT * _largest_on_diagonal(matrix))
 
 
 def factor_memory(matrix: PETSc.Mat) -> float:
@@ -106,17 +109,23 @@ def know_rigid_motions(matrix: PETSc.Mat, places: NDArray[np.float64]) -> None:
 
 def _settings(matrix: PETSc.Mat, mass: PETSc.Mat | None) -> dict[str, str]:
     ranks, unknowns = matrix.comm.size, matrix.getSize()[0]
-    stiffness = math.inf if mass is None else _stiffness_over_mass(matrix, mass)
+    stiffness = math.inf if mass is None else stiffness_over_mass(matrix, mass)
     fits = factor_memory(matrix) < SHARE_OF_MEMORY * available_memory()
+    pivot = repr(SMALLEST_PIVOT * _largest_on_diagonal(matrix))
     if fits and not (stiffness < MASS_DOMINATES and unknowns > _iterated_above(ranks, mass is matrix)):
-        direct = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc"}
+        direct = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc", "pc_factor_zeropivot": pivot}
         if ranks == 1:
             return {"ksp_type": "preonly"} | direct
         gathered = {f"telescope_{name}": value for name, value in ({"ksp_type": "preonly"} | direct).items()}
         return {"ksp_type": "preonly", "pc_type": "telescope", "pc_telescope_reduction_factor": str(ranks)} | gathered
     krylov = {"ksp_type": "cg", "ksp_norm_type": "unpreconditioned", "ksp_initial_guess_nonzero": "1"}
     if stiffness < INCOMPLETE_UP_TO:
-        return krylov | {"pc_type": "bjacobi", "sub_ksp_type": "preonly", "sub_pc_type": "icc"}
+        return krylov | {
+            "pc_type": "bjacobi",
+            "sub_ksp_type": "preonly",
+            "sub_pc_type": "icc",
+            "sub_pc_factor_zeropivot": pivot,
+        }
     return krylov | {"pc_type": "gamg", "mg_levels_ksp_type": "chebyshev", "mg_levels_pc_type": "jacobi"}
 
 
@@ -127,11 +136,15 @@ def _iterated_above(ranks: int, pure_mass: bool) -> float:
     return MANY_RANKS_ITERATE if ranks > 1 else math.inf
 
 
-def _stiffness_over_mass(matrix: PETSc.Mat, mass: PETSc.Mat) -> float:
+def stiffness_over_mass(matrix: PETSc.Mat, mass: PETSc.Mat) -> float:
     """Largest ratio of the diagonals, less 1; the same for any number of ranks."""
     ratio, below = matrix.getDiagonal(), mass.getDiagonal()
     ratio.pointwiseDivide(ratio, below)
     return ratio.max()[1] - 1.0
+
+
+def _largest_on_diagonal(matrix: PETSc.Mat) -> float:
+    return matrix.getDiagonal().max()[1]
 
 
 def _set_up(solver: PETSc.KSP) -> None:

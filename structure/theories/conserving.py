@@ -71,6 +71,9 @@ class ConservingStepper(ABC):
     def strain(self) -> float:
         """This rank's share of the strain energy [J/m]."""
 
+    def require_resolved(self) -> None:  # noqa: B027  nothing to refuse
+        """See `Stepper`: residuals weigh mass and stiffness apart, so that no step is refused."""
+
     def start(self) -> None:
         """See `Stepper`."""
         self._balance_acceleration()

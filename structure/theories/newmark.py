@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from structure.schemes import Scheme
-from structure.solvers.solver import factorise
+from structure.solvers.solver import factorise, stiffness_over_mass
+from structure.theories.round_off import require_rigid_motion
 
 
 class NewmarkStepper:
@@ -63,7 +64,9 @@ class NewmarkStepper:
             self._damped_before, self._damped, self._ahead = (self._u.duplicate() for _ in range(3))
             self._damped_ahead = self._u.duplicate()
         self._weights()
-        self._solve = factorise(self._effective_matrix(), mass)
+        effective = self._effective_matrix()
+        self._contrast = stiffness_over_mass(effective, mass)
+        self._solve = factorise(effective, mass)
 
     def _weights(self) -> None:
         """Weights of the accelerations in the increments of u and v, old a and mean a_m."""
@@ -79,6 +82,10 @@ class NewmarkStepper:
             effective.axpy(late * self._v_new, self._damping, structure=same)
         effective.axpy(late * self._u_new, self._stiffness, structure=same)
         return effective
+
+    def require_resolved(self) -> None:
+        """See `Stepper`."""
+        require_rigid_motion(self._contrast, self._dt)
 
     def start(self) -> None:
         """Acceleration that is in equilibrium with displacement, velocity and force."""

@@ -31,6 +31,15 @@ class Stepper(Protocol):
     increment: Floats
     carried: Floats
 
+    def require_resolved(self) -> None:
+        """Refuse a step whose round-off moves the body as a whole.
+
+        Raises
+        ------
+        StructureError
+        """
+        ...
+
     def start(self) -> None:
         """Take up displacement, velocity and force; the acceleration follows from equilibrium."""
         ...
