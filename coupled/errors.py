@@ -36,3 +36,17 @@ class QuantityError(LeitoError):
 
 class Interrupted(LeitoError):
     """A run stopped by the user; the message says how to go on."""
+
+
+# Named rather than imported: importing their rooms would load FEniCSx for every command.
+_ROOM_ERRORS = {
+    ("meshes", "MeshError"),
+    ("structure", "StructureError"),
+    ("particles", "ParticleError"),
+}
+
+
+def is_sentence(error: Exception) -> bool:
+    """Whether an error is one sentence to the user, of this room or another, rather than a defect of ours."""
+    kinds = {(kind.__module__.partition(".")[0], kind.__name__) for kind in type(error).__mro__}
+    return isinstance(error, LeitoError) or bool(kinds & _ROOM_ERRORS)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import traceback
 from importlib.metadata import version
@@ -12,17 +11,11 @@ import typer
 
 from coupled.cli import results, runs, scenes
 from coupled.cli.speech import say
-from coupled.errors import Interrupted, LeitoError
+from coupled.errors import Interrupted, is_sentence
+from coupled.running.launch import ranks
 
 USER_ERROR = 2
 INTERRUPTED = 130
-
-# Named rather than imported: importing their rooms would load FEniCSx for every command.
-_ROOM_ERRORS = {
-    ("meshes", "MeshError"),
-    ("structure", "StructureError"),
-    ("particles", "ParticleError"),
-}
 
 app = typer.Typer(
     help="Deformable structures that meet grains.",
@@ -63,27 +56,16 @@ def main() -> None:
     except Interrupted as stop:
         say(str(stop))
         sys.exit(INTERRUPTED)
-    except LeitoError as error:
-        say(str(error))
-        sys.exit(USER_ERROR)
-    except ValueError as error:
-        if not _is_ours(error):
+    except Exception as error:
+        if not is_sentence(error):
             _end_other_ranks()
             raise
         say(str(error))
         sys.exit(USER_ERROR)
-    except Exception:
-        _end_other_ranks()
-        raise
 
 
 def _end_other_ranks() -> None:
     """After a defect of ours on one of several ranks: the others would wait for it for ever."""
-    if int(os.environ.get("OMPI_COMM_WORLD_SIZE", os.environ.get("PMI_SIZE", "1"))) > 1 and "mpi4py.MPI" in sys.modules:
+    if ranks() > 1 and "mpi4py.MPI" in sys.modules:
         traceback.print_exc()
         sys.modules["mpi4py.MPI"].COMM_WORLD.Abort(1)
-
-
-def _is_ours(error: ValueError) -> bool:
-    kinds = {(kind.__module__.partition(".")[0], kind.__name__) for kind in type(error).__mro__}
-    return bool(kinds & _ROOM_ERRORS)

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Sequence
 
-
-def first_rank() -> bool:
-    """Return whether this process is the one that speaks; asked without loading MPI."""
-    names = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK")
-    return all(os.environ.get(name, "0") == "0" for name in names)
+from coupled.running.launch import first_rank
 
 
 def say(sentence: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import tomllib
 from collections.abc import Mapping
@@ -69,7 +70,7 @@ def open_folder(path: Path, scene: Scene, *, resume: bool, overwrite: bool) -> R
         raise LeitoError(f"{path} holds a run already; go on with --resume, or start anew with --overwrite or --out")
     saved = None
     if holds and resume:
-        _require_same_scene(path, scene)
+        require_same_scene(path, scene, free=FREE_TO_CHANGE)
         saved = _latest(path, scene)
     return RunFolder(path, saved, to_clear=holds and overwrite)
 
@@ -97,15 +98,34 @@ def _clear(path: Path) -> None:
             place.unlink()
 
 
-def _require_same_scene(path: Path, scene: Scene) -> None:
-    """Compare with the scene of the folder, both with the defaults of this version."""
+def finished(path: Path, scene: Scene) -> bool:
+    """Whether the run of a scene in a folder has nothing left to do."""
+    if not (path / SUMMARY).exists():
+        return False
+    done = json.loads((path / SUMMARY).read_text())["simulated_seconds"]
+    return scene.time.stop_at_rest is not None or done >= scene.time.duration * (1.0 - 1e-9)
+
+
+def require_same_scene(path: Path, scene: Scene, *, free: tuple[str, ...] = ()) -> None:
+    """Compare a scene, its step a number, with that of a folder, both with the defaults of this version.
+
+    Parameters
+    ----------
+    free : tuple of str
+        Beginnings of the keys that may differ.
+
+    Raises
+    ------
+    LeitoError
+        Naming the first key that differs.
+    """
     try:
         old = _flat(tomllib.loads(dump_scene(_scene_of_run(path / SCENE))))
     except SceneError as error:
         raise LeitoError(f"{path} holds no {SCENE} of this version ({error}); start anew with --overwrite") from None
     new = _flat(tomllib.loads(dump_scene(scene)))
     for key in sorted(old.keys() | new.keys()):
-        if old.get(key) != new.get(key) and not key.startswith(FREE_TO_CHANGE):
+        if old.get(key) != new.get(key) and not key.startswith(free):
             raise LeitoError(
                 f"{key} = {new.get(key)} differs from {old.get(key)} of the run in {path}; "
                 "a run is resumed with its own scene: use another folder with --out"

@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from coupled.build import Built, stable_ratio
 from coupled.report.contact import contact_numbers
 from coupled.report.quantities import quantity_lines
@@ -15,7 +18,12 @@ from coupled.step import limits_of
 
 
 def summarise(
-    built: Built, seen: Observation, first: dict[str, float], peaks: dict[str, float], seconds: dict[str, float]
+    built: Built,
+    seen: Observation,
+    first: dict[str, float],
+    peaks: dict[str, float],
+    seconds: dict[str, float],
+    stepping: NDArray[np.float64],
 ) -> dict[str, Any]:
     """Numbers of `summary.json`.
 
@@ -29,6 +37,8 @@ def summarise(
         Largest magnitudes over all observations.
     seconds : dict
         Wall time per part [s].
+    stepping : array, shape (2,)
+        Wall time and processor time of the steps and their output [s].
     """
     model, numbers, limits = built.model, seen.numbers, limits_of(built.model)
     wall = sum(seconds.values())
@@ -40,6 +50,8 @@ def summarise(
         "steps": steps,
         "wall_seconds": wall,
         "wall_seconds_by_part": seconds,
+        "stepping_seconds": float(stepping[0]),
+        "cpu_seconds": float(stepping[1]),
         "free_grains": free,
         "particle_steps_per_second": peaks["particle_steps"] / seconds["grains"] if seconds.get("grains") else 0.0,
         "time_step": built.scene.time.step,

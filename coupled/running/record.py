@@ -29,6 +29,7 @@ PEAKS = (
     "stiffness_ratio",
 )  # fmt: skip
 FIRST = ("centroid_y",)
+STEPPING = "stepping"  # beside the parts, which it spans
 
 
 class Record:
@@ -55,6 +56,8 @@ class Record:
     def __init__(self, built: Built, folder: RunFolder, comm: MPI.Intracomm, seconds: dict[str, float]) -> None:
         self.built, self.model, self.folder, self.comm = built, built.model, folder, comm
         self.seconds = seconds | {"output": 0.0}
+        self._stepped = np.zeros(2)
+        self._begun: NDArray[np.float64] | None = None
         seen = observe(self.model, None)
         self.start = seen.balance.entries
         self.first = {name: seen.numbers.get(name, 0.0) for name in FIRST}
@@ -79,11 +82,22 @@ class Record:
         self.start = dict(zip(self.start, saved["run.start"].tolist(), strict=True))
         self.first = dict(zip(self.first, saved["run.first"].tolist(), strict=True))
         self.peaks |= dict(zip(PEAKS, saved["run.peaks"].tolist(), strict=False))  # older runs kept fewer
-        for name, spent in json.loads(bytes(saved["run.seconds"]).decode()).items():
+        before = json.loads(bytes(saved["run.seconds"]).decode())
+        self._stepped = np.array(before.pop(STEPPING, [0.0, 0.0]))  # older runs did not count it
+        for name, spent in before.items():
             into = self.model.seconds if name in self.model.seconds else self.seconds
             into[name] = into.get(name, 0.0) + spent
         if FORMER_STEP in saved:
             self._rebase(saved["run.entries"])
+
+    def begin(self) -> None:
+        """The run's own work begins: all is loaded, compiled and built."""
+        self._begun = _clocks()
+
+    @property
+    def stepping(self) -> NDArray[np.float64]:
+        """Wall time and processor time (all threads of this rank) of the steps and their output so far [s]."""
+        return self._stepped if self._begun is None else self._stepped + _clocks() - self._begun
 
     def _rebase(self, entries: NDArray[np.float64]) -> None:
         """Take out of the ledger what its lines [J/m] change by where a state is seen with another step.
@@ -137,7 +151,8 @@ class Record:
 
     def save(self, state: dict[str, NDArray[Any]], entries: dict[str, float], name: str = checkpoint.NAME) -> None:
         """Write a state of the model, with its entries of the ledger [J/m] and the sums that belong to it."""
-        spent = json.dumps(self.seconds | self.model.seconds).encode()
+        parts = self.seconds | self.model.seconds
+        spent = json.dumps(parts | {STEPPING: self.stepping.tolist()}).encode()
         sums = {
             "run.start": np.array(list(self.start.values())),
             "run.entries": np.array(list(entries.values())),
@@ -172,3 +187,7 @@ class Record:
         if self.comm.rank == 0:
             with open(self.folder.file("log.txt"), "a") as log:
                 log.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')} {text}\n")
+
+
+def _clocks() -> NDArray[np.float64]:
+    return np.array([time.perf_counter(), time.process_time()])

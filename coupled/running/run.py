@@ -8,6 +8,7 @@ import os
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from coupled import bed as beds
 from coupled.build import Built, build
 from coupled.errors import Interrupted
 from coupled.output import checkpoint
-from coupled.output.folder import BEFORE_FAILURE, SUMMARY, RunFolder, open_folder
+from coupled.output.folder import BEFORE_FAILURE, SUMMARY, RunFolder, finished, open_folder
 from coupled.output.lock import only_process
 from coupled.output.provenance import write_json
 from coupled.quantities import known_of
@@ -47,6 +48,8 @@ def run_scene(
     overwrite: bool = False,
     progress: bool = True,
     comm: MPI.Intracomm = MPI.COMM_WORLD,
+    stop: Stop | None = None,
+    shared: Path | None = None,
 ) -> Path:
     """Run a scene to its end and return its folder.
 
@@ -58,6 +61,10 @@ def run_scene(
         writes into it.
     threads : int, optional
         For the grains; all cores by default, shared among the ranks.
+    stop : Stop, optional
+        The wish of one who makes many runs; by default the run listens itself.
+    shared : Path, optional
+        Folder whose `beds` are shared with other runs; the one above `out` by default.
 
     Raises
     ------
@@ -71,30 +78,39 @@ def run_scene(
     scene = with_step(scene)
     threads = threads or max(1, (os.cpu_count() or 1) // comm.size)
     with LeaveTogether(comm), _holding(comm, out, waits=False):
-        return _run(scene, out, resume, overwrite, threads, progress, comm)
+        way = Way(threads=threads, progress=progress, comm=comm, stop=stop, shared=shared or out.parent)
+        return _run(scene, out, resume, overwrite, way)
 
 
-def _run(
-    scene: Scene, out: Path, resume: bool, overwrite: bool, threads: int, progress: bool, comm: MPI.Intracomm
-) -> Path:
+@dataclass(frozen=True, kw_only=True)
+class Way:
+    """How a run and that of its bed are made; see `run_scene`."""
+
+    threads: int
+    progress: bool
+    comm: MPI.Intracomm
+    stop: Stop | None
+    shared: Path
+
+
+def _run(scene: Scene, out: Path, resume: bool, overwrite: bool, way: Way) -> Path:
     """Run a scene in a folder that this process holds."""
-    seconds = {"bed": 0.0}
-    settled = None
+    comm, seconds, settled = way.comm, {"bed": 0.0}, None
     if scene.bed is not None:
         started = time.perf_counter()
-        settled = _settled(scene, out, threads, progress, comm)
+        settled = _settled(scene, way)
         seconds["bed"] = time.perf_counter() - started
     folder = on_root(comm, lambda: open_folder(out, scene, resume=resume, overwrite=overwrite))
-    if on_root(comm, lambda: _finished(folder, scene)):
+    if on_root(comm, lambda: folder.saved is not None and finished(folder.path, scene)):
         if comm.rank == 0:
             _tell_again(folder, scene)
         return folder.path
     started = time.perf_counter()
-    built = together(comm, lambda: build(scene, bed=settled, threads=threads, comm=comm))
+    built = together(comm, lambda: build(scene, bed=settled, threads=way.threads, comm=comm))
     root_alone(comm, lambda: folder.take(scene))
     run = Run(built, folder, comm, seconds)
     run.record.seconds["setup"] = time.perf_counter() - started
-    run.go(progress=progress)
+    run.go(progress=way.progress, stop=way.stop)
     return folder.path
 
 
@@ -119,7 +135,7 @@ class Run:
             self.model.particles.advance(0)  # compiles, or finds the compiled code
         self.record = Record(built, folder, comm, seconds)
 
-    def go(self, *, progress: bool) -> None:
+    def go(self, *, progress: bool, stop: Stop | None = None) -> None:
         """Advance to the end, to Ctrl-C, or to the first sign that something is wrong."""
         record, model = self.record, self.model
         record.say(cautions.before(self.built))
@@ -127,7 +143,9 @@ class Run:
             record.log(sentence)
         record.write_provenance()
         wanted = progress and self.comm.rank == 0
-        with Stop() as stop, RunProgress(self.scene.title, self.last, model.steps_done, wanted=wanted) as bar:
+        listening = Stop() if stop is None else contextlib.nullcontext(stop)
+        record.begin()
+        with listening as stop, RunProgress(self.scene.title, self.last, model.steps_done, wanted=wanted) as bar:
             seen = observe(model, record.start)
             guard = Guard(model, record.start, self.comm)
             if not record.resumed:
@@ -202,7 +220,7 @@ class Run:
         record.say(list(cautions.beyond_theory(self.built, record.peaks).values()))
         if self.comm.rank != 0:
             return
-        started = time.perf_counter()
+        stepping, started = record.stepping, time.perf_counter()
         free = model.particles.grains.n_free if model.particles is not None else 0
         peaks = record.peaks | {"particle_steps": free * model.steps_done * model.substeps}
         pictures = []
@@ -211,7 +229,7 @@ class Run:
 
             pictures = plot_run(self.folder.path)
         record.seconds["output"] += time.perf_counter() - started
-        summary = summarise(self.built, seen, record.first, peaks, record.seconds | model.seconds)
+        summary = summarise(self.built, seen, record.first, peaks, record.seconds | model.seconds, stepping)
         summary["quantities"], unknown = known_of(self.scene, self.folder.path)
         for sentence in unknown:
             record.log(f"note: {sentence}")
@@ -257,20 +275,12 @@ def _holding(comm: MPI.Intracomm, folder: Path, *, waits: bool) -> Iterator[None
         yield
 
 
-def _settled(scene: Scene, out: Path, threads: int, progress: bool, comm: MPI.Intracomm) -> dict[str, Any] | None:
+def _settled(scene: Scene, way: Way) -> dict[str, Any] | None:
     """State of the bed, settled now if no scene beside this one has done it or is doing it."""
-    folder = beds.bed_folder(scene, out.parent)
+    comm, folder = way.comm, beds.bed_folder(scene, way.shared)
     if not on_root(comm, lambda: (folder / SUMMARY).exists()):
         with _holding(comm, folder, waits=True):
             begun = on_root(comm, lambda: (folder / checkpoint.NAME).exists())
             if not on_root(comm, lambda: (folder / SUMMARY).exists()):
-                _run(scene.bed, folder, begun, not begun, threads, progress, comm)
+                _run(scene.bed, folder, begun, not begun, way)
     return beds.settled_state(folder) if comm.rank == 0 else None
-
-
-def _finished(folder: RunFolder, scene: Scene) -> bool:
-    """Whether the run in a folder that is taken up again has nothing left to do."""
-    if folder.saved is None or not folder.file(SUMMARY).exists():
-        return False
-    done = json.loads(folder.file(SUMMARY).read_text())["simulated_seconds"]
-    return scene.time.stop_at_rest is not None or done >= scene.time.duration * (1.0 - 1e-9)
