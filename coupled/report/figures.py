@@ -3,27 +3,17 @@
 from __future__ import annotations
 
 import tomllib
-import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-
-matplotlib.use("Agg")  # no screen is needed
-# Debian's own matplotlib stands beside ours; nothing here has three axes.
-warnings.filterwarnings("ignore", message="Unable to import Axes3D")
-
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.collections import EllipseCollection, PolyCollection
-from matplotlib.figure import Figure
 
 from coupled.errors import LeitoError
 from coupled.output import history
 from coupled.output.folder import SCENE
 from coupled.output.frames import read_frame
+from coupled.report.drawing import Axes, EllipseCollection, Figure, PolyCollection, plt
 
 FREE, GLUED = -1, 0
 WIDTH = 7.0

@@ -1,0 +1,1 @@
+"""Measures and moving pictures of runs, from their files alone."""
