@@ -40,7 +40,7 @@ def check_scene(scene: Scene) -> list[Row]:
     asked, scene = scene.time, with_step(scene)
     settled = _settled_bed(scene)
     threads = max(1, (os.cpu_count() or 1) // MPI.COMM_WORLD.size)
-    tried = scene if settled is not None else _on_lattice(scene)
+    tried = scene if settled is not None else on_lattice(scene)
     built = build(tried, bed=settled, threads=threads)
     rows = [("scene", "title", scene.title), ("scene", "models", ", ".join(models(scene)))]
     rows += _grain_rows(built)
@@ -76,7 +76,8 @@ def _theory(scene: Scene) -> str | None:
     )
 
 
-def _on_lattice(scene: Scene) -> Scene:
+def on_lattice(scene: Scene) -> Scene:
+    """The scene with its grains as they are laid out, without the bed that settles them."""
     if not isinstance(scene.grains, SettledGrains):
         return scene
     return scene.model_copy(update={"grains": scene.first_grains, "bed": None})

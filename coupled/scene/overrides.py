@@ -1,4 +1,4 @@
-"""Overrides of single keys: ``grains.sizes.0.count=10``."""
+"""Overrides of single keys: ``grains.sizes.0.count=10``, ``damping=absent``."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from typing import Any
 
 from coupled.errors import SceneError
 
+ABSENT = "absent"  # the bare word; in quotes it is a string
 _BARE_WORD = re.compile(r"[A-Za-z_][\w./-]*")
 
 
 def parse_override(text: str) -> tuple[list[str], Any]:
     """Split ``a.b=value`` into the path and the value, read as TOML.
 
-    A bare word that is no TOML value counts as a string, because a shell eats quotes.
+    A bare word that is no TOML value counts as a string, because a shell eats quotes; the word ``absent`` is None,
+    which leaves the key or table out.
     """
     key, equals, value = (part.strip() for part in text.partition("="))
     if not equals or not key or not all(key.split(".")):
@@ -27,17 +29,19 @@ def parse_override(text: str) -> tuple[list[str], Any]:
                 f"--set {text}: '{value}' is no TOML value; write a number, true, a list or a string in quotes.",
                 key=key,
             ) from None
-        parsed = value
+        parsed = None if value == ABSENT else value
     return key.split("."), parsed
 
 
 def apply_override(data: dict[str, Any], path: list[str], value: Any) -> None:
-    """Set one key of the nested tables ``data`` in place; missing tables are made."""
+    """Set one key of the nested tables ``data`` in place; missing tables are made. None takes the key out."""
     here: Any = data
     for depth, part in enumerate(path):
         walked = ".".join(path[:depth])
         slot = _slot(here, part, walked, ".".join(path))
-        if depth == len(path) - 1:
+        if depth == len(path) - 1 and value is None:
+            here.pop(slot, None) if isinstance(here, dict) else here.pop(slot)
+        elif depth == len(path) - 1:
             here[slot] = value
         else:
             here = here[slot] if isinstance(here, list) else here.setdefault(slot, {})

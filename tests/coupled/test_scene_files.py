@@ -161,3 +161,13 @@ def test_a_bare_name_finds_the_scene_beside_first(tmp_path):
     }
     (tmp_path / "scene.toml").write_text(tomli_w.dumps(scene))
     assert load_scene(tmp_path / "scene.toml").bed.grains.sizes[0].count == 5
+
+
+def test_the_word_absent_leaves_a_key_or_table_out():
+    scene = load_scene("bed", ["damping=absent", "contact.rolling_friction=absent", "output=absent"])
+    assert scene.damping is None and not scene.contact.rolls
+    assert load_scene("bed", ["title='absent'"]).title == "absent"
+    assert load_scene("bed", ["structure=absent"]) == load_scene("bed")  # what is not there may be left out
+    assert [size.count for size in load_scene("bed", ["grains.sizes.0=absent"]).grains.sizes] == [7500, 3750]
+    with pytest.raises(SceneError, match="time.step is missing"):
+        load_scene("bed", ["time.step=absent"])

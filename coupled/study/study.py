@@ -1,0 +1,226 @@
+"""A scene over its knobs: plan, run, compare, write."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from coupled.errors import LeitoError
+from coupled.output.provenance import write_json
+from coupled.report.quantities import unit_shown
+from coupled.scene import Scene, load_scene
+from coupled.scene.quantities import Quantity
+from coupled.study import table
+from coupled.study.combine import combinations
+from coupled.study.cost import Trial, try_out
+from coupled.study.errors import Judged
+from coupled.study.judge import judge_all, references
+from coupled.study.knob import Knob
+from coupled.study.knobs import knobs_of, values_of
+from coupled.study.picture import draw_front
+from coupled.study.plan import Load, Plan, Terms, make_plan, one_turn
+from coupled.study.reference import Reference
+from coupled.study.runs import RUNS, Runner
+from coupled.study.seeds import seeds_of
+from coupled.study.setting import Ran, Setting
+from coupled.study.turns import Changes, Value
+from coupled.study.words import Told, text_of
+
+TRIAL, TEXT = "trial.json", "study.md"
+QUIET = ("output.figures=false", "output.frames_per_second=0.0")  # no setting pays for pictures
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wishes:
+    """What a study is asked for.
+
+    Parameters
+    ----------
+    overrides : tuple
+        Of the scene in every setting.
+    knobs : tuple
+        Names; empty: all that the scene has.
+    values : dict
+        Values to try, by knob.
+    reference : tuple
+        Overrides of the reference; empty: the scene's finest level.
+    seeds, jobs : int, optional
+        Samples per setting; runs side by side.
+    budget : float, optional
+        Wall time of all runs [s].
+    """
+
+    overrides: tuple[str, ...] = ()
+    knobs: tuple[str, ...] = ()
+    values: Mapping[str, tuple[Value, ...]] = field(default_factory=dict)
+    reference: Changes = ()
+    seeds: int | None = None
+    jobs: int | None = None
+    budget: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """The scene of a study, and what of it is turned and looked at."""
+
+    load: Load
+    base: Scene
+    quantities: Sequence[Quantity]
+    knobs: Sequence[Knob]
+    values: Mapping[str, tuple[Value, ...]]
+    seeds: tuple[int, ...]
+
+    def turned(self) -> dict[str, tuple[Knob, Value]]:
+        """Knob and value of each setting of one knob, by the setting's name."""
+        pairs = [(knob, value) for knob in self.knobs for value in values_of(knob, self.base, self.values)]
+        return {one_turn(knob, value, self.base).name: (knob, value) for knob, value in pairs}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """A finished study: what ran, its errors by quantity, and the files."""
+
+    rans: tuple[Ran, ...]
+    judged: dict[str, list[Judged]]
+    references: dict[str, Reference]
+    units: dict[str, str]
+    folder: Path
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """Rows for a terminal."""
+        return table.rows(self.rans, self.judged, self.units)
+
+
+def run_study(
+    scene: str | Path,
+    wishes: Wishes,
+    *,
+    out: Path,
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: bool = True,
+    say: Callable[[str], None] = print,
+) -> Study:
+    """Run a scene over its knobs and write study.csv, study.md and a picture per quantity.
+
+    Parameters
+    ----------
+    scene : path or name
+    wishes : Wishes
+    out : Path
+        Folder of the study; what its runs hold is reused with `resume`, refused without it.
+    say : function
+        Takes the plan as one sentence, before anything runs.
+
+    Raises
+    ------
+    LeitoError
+        One sentence: no quantities, an unknown knob, a budget that is too small, a folder that holds a study.
+    Interrupted
+        After Ctrl-C.
+    """
+
+    def load(changes: Changes = (), accuracy: str | None = None) -> Scene:
+        return load_scene(scene, (*wishes.overrides, *QUIET, *changes))
+
+    base = load()
+    case = Case(
+        load=load, base=base, quantities=_quantities(base, scene), values=wishes.values,
+        knobs=knobs_of(base, (*wishes.knobs, *wishes.values)), seeds=seeds_of(base, wishes.seeds),
+    )  # fmt: skip
+    load(wishes.reference)  # a reference that cannot be is refused at once
+    _take(out, resume, overwrite)
+    workers = wishes.jobs or os.cpu_count() or 1
+    terms = Terms(trial=_trial(base, out), samples=max(1, len(case.seeds)), workers=workers, budget=wishes.budget)
+    plan = make_plan(load, case.knobs, wishes.values, wishes.reference, terms)
+    say(_announcement(plan, terms, out))
+    runner = Runner(load, out, case.seeds, wishes.jobs, progress)
+    rans = runner.run(plan.settings)
+    rans += runner.run(_further(case, rans, terms, plan))
+    return _written(case, plan, rans, out)
+
+
+def _quantities(scene: Scene, name: str | Path) -> Sequence[Quantity]:
+    if not scene.quantities:
+        raise LeitoError(
+            f"{name}: the scene names no quantities of interest, so that there is nothing to compare; add "
+            '[[quantities]] with name, kind and column, e.g. kind = "drop", column = "centroid_y"'
+        )
+    return scene.quantities
+
+
+def _take(out: Path, resume: bool, overwrite: bool) -> None:
+    """Make the folder, or clear what is to be overwritten."""
+    ours = (RUNS, TRIAL, TEXT, table.CSV)
+    holds = any((out / name).exists() for name in ours)
+    if holds and not (resume or overwrite):
+        raise LeitoError(f"{out} holds a study already; go on with --resume, or start anew with --overwrite or --out")
+    if holds and overwrite:
+        for name in ours:
+            place = out / name
+            shutil.rmtree(place) if place.is_dir() else place.unlink(missing_ok=True)
+        for picture in out.glob("pareto_*.png"):
+            picture.unlink()
+    out.mkdir(parents=True, exist_ok=True)
+
+
+def _trial(base: Scene, out: Path) -> Trial:
+    """The trial of this folder: a study that goes on keeps its plan."""
+    path = out / TRIAL
+    if path.exists():
+        return Trial(**json.loads(path.read_text()))
+    trial = try_out(base)
+    write_json(path, trial._asdict())
+    return trial
+
+
+def _announcement(plan: Plan, terms: Terms, out: Path) -> str:
+    count = len(plan.settings)
+    samples = f", {terms.samples} seeds each" if terms.samples > 1 else ""
+    left = f"; {len(plan.left_out)} more do not fit into the budget" if plan.left_out else ""
+    return (
+        f"study of {count} settings{samples}, {count * terms.samples} runs, {terms.workers} at a time: about "
+        f"{_spoken(plan.seconds)} and some seconds per run to load and build{left}; results in {out}"
+    )
+
+
+def _spoken(seconds: float) -> str:
+    if seconds < 120.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} h"
+
+
+def _further(case: Case, rans: Sequence[Ran], terms: Terms, plan: Plan) -> list[Setting]:
+    """Combinations along the front, as far as the budget goes."""
+    if not any(ran.done and ran.setting.role == "base" for ran in rans):
+        return []
+    judged = judge_all(rans, references(rans, case.quantities), chance=bool(case.seeds))
+    found: list[Setting] = []
+    for setting in combinations(judged, case.turned(), case.load, terms.trial):
+        if terms.budget is None or plan.seconds + terms.seconds([*found, setting]) <= terms.budget:
+            found.append(setting)
+    return found
+
+
+def _written(case: Case, plan: Plan, rans: list[Ran], out: Path) -> Study:
+    """Compare, and write what is to be read."""
+    left = [Ran(setting=setting, status="left out", message="does not fit into --budget") for setting in plan.left_out]
+    rans = rans + left
+    found = references(rans, case.quantities)
+    judged = judge_all(rans, found, chance=bool(case.seeds))
+    units = {quantity.name: unit_shown(quantity) for quantity in case.quantities}
+    pictures = {name: out / f"pareto_{name}.png" for name in judged}
+    title = case.base.title
+    for name, items in judged.items():
+        draw_front(pictures[name], f"{title}: {name}", items)
+    table.write_csv(out / table.CSV, rans, judged, found, units)
+    told = Told(
+        title=title, seeds=case.seeds, rans=rans, judged=judged, references=found, units=units, knobs=case.knobs,
+        pictures=pictures,
+    )  # fmt: skip
+    (out / TEXT).write_text(text_of(told))
+    return Study(rans=tuple(rans), judged=judged, references=found, units=units, folder=out)
