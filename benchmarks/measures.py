@@ -83,24 +83,6 @@ def sizes(rates: Rates) -> Numbers:
     return found
 
 
-def features(rates: Rates) -> Numbers:
-    """The reference with fewer laws and with the ledger."""
-    saved = beds.reference()
-    systems = {
-        "full law": beds.system_of(saved),
-        "with ledger": beds.system_of(saved, ledger=True),
-        "without rolling": beds.system_of(saved, contact=beds.WITHOUT_ROLLING),
-        "normal alone": beds.system_of(saved, contact=beds.NORMAL_ALONE),
-    }
-    cost = interleaved({name: per_particle_step(s, 200) for name, s in systems.items()}, ROUNDS)
-    for name in list(systems)[1:]:
-        rates.add(name, len(systems[name].grains), 1, cost[name], systems[name])
-    return {
-        "normal_only_over_full": cost["normal alone"] / cost["full law"],
-        "ledger_overhead": cost["with ledger"] / cost["full law"] - 1.0,
-    }
-
-
 def phases(rates: Rates) -> Numbers:
     """Settled, falling, sheared and shaken grains; then, apart from the rates, their shares of new lists."""
     saved = beds.reference()

@@ -67,6 +67,7 @@ FURTHER = {
     "ratio_lammps_hooke_history_105k": "1",
     "ratio_liggghts_105k": "1",
     "structure_ledger": "1",
+    "absent_features": "1",
     "structure_overhead_1e6": "1",
     "structure_strong_100k": "1",
     "structure_strong_1e6": "1",
@@ -172,6 +173,10 @@ def show() -> None:
             f"{rate['code']} beside the others, {rate['discs']} discs, {rate['cores']} core{'s' * (rate['cores'] > 1)}"
         )
         table.add_row(name, f"{rate['particle_steps_per_second']:.3g}", "1/s", "", "")
+    for row in content.get("features", []):
+        beside = f" beside {row['beside']}" if row["beside"] else ""
+        told = f"{row['added']:+.2f}, {row['low']:+.2f} to {row['high']:+.2f}; {row['percent']:+.0f} %"
+        table.add_row(f"{row['feature']}{beside}, of a grain's step", told, "ns", "", "")
     for row in content.get("structure", []):
         name = f"step of {row['unknowns']} unknowns, {row['ranks']} rank{'s' * (row['ranks'] > 1)}; over the bare one, and without ledger"
         more, lean = (row[key] / row["bare_step_seconds"] - 1.0 for key in ("step_seconds", "lean_step_seconds"))

@@ -8,6 +8,9 @@ of the file as it is.
 import argparse
 
 import coupled_share
+import features
+import features_figure
+import features_of_runs
 import figure
 import interfaces
 import measures
@@ -18,7 +21,16 @@ import structure_figure
 import structure_steps
 from rich.console import Console
 
+FEATURES = "features"
 MILLION = "million"  # unknowns: three minutes, only on demand
+
+
+def feature_costs(found: list[features.Cost]) -> measures.Numbers:
+    """Measure every feature, put its cost into `found`, return the ratios that have goals."""
+    found += features.costs()
+    whole = next(cost.whole for cost in found if cost.feature == features.FULL)
+    found += features_of_runs.costs(whole)
+    return dict(features.ratios(found))
 
 
 def main() -> None:
@@ -26,7 +38,7 @@ def main() -> None:
     groups = {
         "threads": lambda: measures.threads_15k(rates),
         "sizes": lambda: measures.sizes(rates),
-        "features": lambda: measures.features(rates),
+        FEATURES: lambda: feature_costs(features_found),
         "phases": lambda: measures.phases(rates),
         "ratio": lambda: measures.size_ratio(rates),
         "start": processes.starts,
@@ -44,7 +56,7 @@ def main() -> None:
     chosen = parser.parse_args().groups or usual
     if unknown := set(chosen) - set(groups):
         parser.error(f"unknown group {', '.join(sorted(unknown))}: take any of {', '.join(groups)}")
-    rates, steps = measures.Rates(), structure_steps.Rows()
+    rates, steps, features_found = measures.Rates(), structure_steps.Rows(), []
     console = Console(stderr=True)
     values: measures.Numbers = {}
     for name in chosen:
@@ -60,10 +72,14 @@ def main() -> None:
         more["peers"] = report.joined_peers(comparison.section)
     if steps.rows:
         more["structure"] = report.joined_structure(steps.rows)
+    if features_found:
+        more[FEATURES] = [cost._asdict() for cost in features_found]
     report.write(values, rates.rows, anew=complete, **more)
     report.show()
     if steps.rows:
         console.print(f"drawn: {structure_figure.draw(report.read())}")
+    if features_found:
+        console.print(f"drawn: {features_figure.draw(report.read())}")
     if "sizes" in chosen:
         console.print(f"drawn: {figure.draw(report.read())}")
 
