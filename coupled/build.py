@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -23,13 +23,13 @@ from coupled.interface.door import Interface, stiffness_ratio
 from coupled.interface.facets import FacetInterface
 from coupled.interface.glued import BODY, GluedGrains
 from coupled.laws import contact_law, interface_spring
+from coupled.layout import box_walls, laid_out, shaking_of
 from coupled.loads import loads_of
 from coupled.model import Model
 from coupled.scene import Beam, RowUnder, Scene, SettledGrains
 from coupled.scene.materials import GRAINS, STRUCTURE, materials
 from coupled.scene.structure import Structure as StructureTable
 from coupled.step import damping_of, with_step
-from particles.beds import lattice
 from particles.timestep import require_stable
 
 WARNED_SHARE = 0.95  # of the stable ratio
@@ -90,6 +90,9 @@ def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI
     )
     ratio = _stiffness_ratio(scene, model, contact, comm)
     model.closed_ratio = _closed_ratio(scene, model, contact)
+    if scene.intruders:
+        first = scene.first_grains.count
+        model.followed = tuple(range(first, first + len(scene.intruders)))
     dt_ratio = scene.time.step / dem.source_bound(system.grains, contact) if system is not None else 0.0
     return Built(model, scene, contact, ratio, comm.bcast(dt_ratio, root=0))
 
@@ -101,15 +104,7 @@ def _free_grains(scene: Scene, bed: Saved | None) -> dem.Grains | None:
         if bed is None:
             raise LeitoError(f'grains.bed = "{scene.grains.bed}" has not been settled: run that scene first')
         return dem.Grains.from_saved(bed)
-    table = scene.grains
-    sizes = [(size.radius, size.count) for size in table.sizes]
-    if table.layout == "list":
-        rows = np.array([(*row, *(0.0,) * (5 - len(row))) for row in table.positions])
-        radius = np.concatenate([np.full(count, size) for size, count in sizes])
-        return dem.Grains.discs(rows[:, :2], radius, table.density, velocity=rows[:, 2:4], spin=rows[:, 4])
-    return lattice(
-        sizes, table.density, width=scene.box.width, spacing=table.spacing, jitter=table.jitter, seed=table.seed
-    )
+    return laid_out(scene)
 
 
 def _mesh(scene: Scene, comm: MPI.Intracomm, centroid: tuple[float, float]) -> meshes.StructureMesh:
@@ -163,6 +158,7 @@ def _smallest_diameter(scene: Scene) -> float | None:
     radii = [row.radius for row in scene.rows]
     if scene.first_grains is not None:
         radii.append(scene.first_grains.smallest_radius)
+    radii += [intruder.radius for intruder in scene.intruders]
     return 2.0 * min(radii) if radii else None
 
 
@@ -222,7 +218,10 @@ def _particles(
     require_stable(grains, contact, scene.time.step)
     options = {
         "time_step": scene.time.step,
-        "walls": _walls(scene),
+        "walls": box_walls(scene),
+        "shaking": shaking_of(scene),
+        "period": (None, None) if scene.box is None else scene.box.period,
+        "scheme": scene.time.integrator,
         "facets": facets,
         "gravity": scene.gravity,
         "threads": threads,
@@ -237,13 +236,6 @@ def _particles(
         if not isinstance(row, RowUnder):
             system.set_velocity(bodies[BODY + 1 + number], np.array(row.velocity))
     return system
-
-
-def _walls(scene: Scene) -> list[dem.Wall]:
-    if scene.box is None:
-        return []
-    walls = dem.box(scene.box.width, scene.box.height, scene.box.walls)
-    return [replace(wall, material=materials(scene).index(wall.name)) for wall in walls]
 
 
 def _row_places(scene: Scene, row: Any, interface: Interface | None) -> NDArray[np.float64]:

@@ -67,6 +67,8 @@ class Model:
         Its resultant, from the contacts themselves [N/m].
     exchanged : Exchanged
         Sums over the windows; on rank 0.
+    followed : tuple of int
+        Numbers of the grains that the history follows.
     closed_ratio : ClosedRatio or None
         Watches the stiffness ratio, where whoever made the model wants it.
     """
@@ -97,6 +99,7 @@ class Model:
         if structure is not None and interface is not None:
             structure.begin_under(self.nodal_force)
         self.closed_ratio: ClosedRatio | None = None
+        self.followed: tuple[int, ...] = ()
         self.iterated = None
         if iteration is not None and interface is not None:
             self.iterated = IteratedExchange(self, iteration)

@@ -6,16 +6,20 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 import particles as dem
 from coupled.interface.glued import BODY
 from coupled.laws import contact_law
 from coupled.model import Model
-from coupled.scene import RowUnder, Scene
+from coupled.scene import RowUnder, Scene, SizeClass
+from particles.crowding import ALIKE
+
+CLOSER = 10  # radii tried of a spread, in each kind of grains that the limit puts together
 
 
 def with_step(scene: Scene) -> Scene:
-    """The scene, its bed included, with a number where `time.step` is "auto".
+    """The scene, its bed included, with a number where `time.step` is "auto", and for a period in steps.
 
     That is `time.safety` times the limit of any packing of its grains (`particles.packing_limit`):
     before the grains have come to rest there is no network whose limit could be taken, and under
@@ -27,13 +31,16 @@ def with_step(scene: Scene) -> Scene:
         If the number does not suit the duration or the output.
     """
     bed = None if scene.bed is None else with_step(scene.bed)
-    if scene.time.step != "auto" and bed is scene.bed:
+    in_steps = scene.shaking is not None and scene.shaking.period_steps is not None
+    if scene.time.step != "auto" and bed is scene.bed and not in_steps:
         return scene
     tables = scene.model_dump(exclude_none=True)
     if bed is not None:
         tables["bed"] = bed
     if scene.time.step == "auto":
         tables["time"]["step"] = tables["time"].pop("safety") * _packing_limit(scene)
+    if in_steps:
+        tables["shaking"]["period"] = tables["shaking"].pop("period_steps") * tables["time"]["step"]
     return Scene.model_validate(tables)
 
 
@@ -47,14 +54,19 @@ def damping_of(scene: Scene) -> dem.GlobalDamping | None:
 
 def _packing_limit(scene: Scene) -> float:
     """Limit of any packing of the grains of a scene [s], from one of each kind."""
-    return dem.packing_limit(_sample(scene), contact_law(scene), damping=damping_of(scene))
+    return dem.packing_limit(
+        _sample(scene), contact_law(scene), damping=damping_of(scene), scheme=scene.time.integrator
+    )
 
 
 def _sample(scene: Scene) -> dem.Grains:
     """A free grain of each size, and two neighbours of each body of prescribed ones; facets count as walls."""
     table, interface = scene.first_grains, scene.interface
-    radius = np.array([size.radius for size in table.sizes])
-    sample = dem.Grains.discs(np.zeros((len(radius), 2)), radius, table.density)
+    radius = np.concatenate([_radii(size) for size in table.sizes])
+    density = np.full(len(radius), table.density)
+    radius = np.append(radius, [intruder.radius for intruder in scene.intruders])
+    density = np.append(density, [intruder.density for intruder in scene.intruders])
+    sample = dem.Grains.discs(np.zeros((len(radius), 2)), radius, density)
     if interface is not None and interface.kind == "glued":
         spacing = interface.smallest_spacing(scene.structure.shape)
         sample = _neighbours(sample, spacing, 0.5 * (interface.diameter or spacing), BODY)
@@ -65,6 +77,12 @@ def _sample(scene: Scene) -> dem.Grains:
             spacing = math.dist(row.start, row.end) / max(row.count - 1, 1) or 2.0 * row.radius
         sample = _neighbours(sample, spacing, row.radius, BODY + 1 + number)
     return sample
+
+
+def _radii(size: SizeClass) -> NDArray[np.float64]:
+    """Radii [m] of a class, so close to each other that every kind of the limit has its smallest and largest."""
+    steps = math.ceil(CLOSER * math.log(size.largest / size.smallest) / ALIKE)
+    return np.geomspace(size.smallest, size.largest, 1 + steps)
 
 
 def _neighbours(grains: dem.Grains, spacing: float, radius: float, body: int) -> dem.Grains:

@@ -18,6 +18,7 @@ from particles.crowding import packing_limit
 from particles.errors import ParticleError
 from particles.facets import Facets
 from particles.network import StiffnessNetwork, stiffness_network
+from particles.shaking import Shaking
 from particles.snapshot import Snapshot
 from particles.stability import StepLimit, sharp_limit
 from particles.state import Grains
@@ -42,6 +43,7 @@ __all__ = [
     "MindlinFriction",
     "ParticleError",
     "ParticleSystem",
+    "Shaking",
     "Snapshot",
     "StepLimit",
     "StiffnessNetwork",

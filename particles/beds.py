@@ -17,6 +17,7 @@ def lattice(
     spacing: float = 1.05,
     jitter: float = 0.0,
     seed: int = 1,
+    holes: Sequence[tuple[float, float, float]] = (),
 ) -> Grains:
     """Discs of mixed sizes on a square lattice between x = 0 and `width`, rows from the floor up.
 
@@ -35,6 +36,8 @@ def lattice(
         lattice of equal columns would come to rest as columns.
     seed : int
         Of the order and the shifts.
+    holes : sequence of (x, y, radius) [m]
+        Discs that are left free.
 
     Raises
     ------
@@ -52,11 +55,25 @@ def lattice(
     if columns < 1:
         raise ParticleError(f"a grain of radius {radius.max():g} m does not fit in a box {width:g} m wide")
     step = width / columns
-    place = np.arange(len(radius))
+    place = _places(len(radius), columns, step, pitch, holes)
     position = np.column_stack([(place % columns + 0.5) * step, (place // columns + 0.5) * pitch])
     gap = 0.5 * np.array([step, pitch]) - radius[:, None]
     position += jitter * gap * rng.uniform(-1.0, 1.0, position.shape)
     return Grains.discs(position, radius, density)
+
+
+def _places(
+    n: int, columns: int, step: float, pitch: float, holes: Sequence[tuple[float, float, float]]
+) -> NDArray[np.int64]:
+    """Numbers of the first `n` places, row by row, whose cells of `step` x `pitch` [m] lie outside the holes."""
+    taken = sum((int(2.0 * radius / step) + 2) * (int(2.0 * radius / pitch) + 2) for _, _, radius in holes)
+    place = np.arange(n + taken)
+    clear = np.ones(len(place), bool)
+    for x, y, radius in holes:
+        aside = np.maximum(np.abs((place % columns + 0.5) * step - x) - 0.5 * step, 0.0)
+        above = np.maximum(np.abs((place // columns + 0.5) * pitch - y) - 0.5 * pitch, 0.0)
+        clear &= np.hypot(aside, above) >= radius
+    return place[clear][:n]
 
 
 def rest_ratio(grains: Grains, gravity: Sequence[float], kinetic: float) -> float:

@@ -152,7 +152,10 @@ class ContactList:
             if group == "walls":
                 if len(arrays["px"]) != len(own.px):
                     continue
-                arrays |= {name: getattr(own, name) for name in ("px", "py", "nx", "ny", "vx", "vy", "material")}
+                arrays |= {
+                    name: getattr(own, name)
+                    for name in ("px", "py", "nx", "ny", "vx", "vy", "gain_x", "gain_y", "material")
+                }
             else:
                 more = n + 1 - len(arrays["start"])
                 arrays["start"] = np.append(arrays["start"], np.full(more, arrays["start"][-1]))
@@ -216,6 +219,8 @@ class ContactList:
             "ny": normal[:, 1].copy(),
             "vx": velocity[:, 0].copy(),
             "vy": velocity[:, 1].copy(),
+            "gain_x": np.zeros(len(walls)),
+            "gain_y": np.zeros(len(walls)),
             "material": np.array([w.material for w in walls], np.int64),
             "px_listed": point[:, 0].copy(),
             "py_listed": point[:, 1].copy(),

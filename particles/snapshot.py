@@ -18,6 +18,7 @@ STEADY = (
     "radius", "mass", "inertia", "inverse_mass", "inverse_inertia", "roll_compliance", "material", "body", "number",
 )  # fmt: skip
 LISTED = ("x_listed", "y_listed")
+OF_WALLS = ("px", "py", "vx", "vy", "gain_x", "gain_y", "force")
 OF_FACETS = ("x", "y", "vx", "vy", "fx", "fy", "work", "side", "side_now", "pushes", "push", *LISTED)
 
 
@@ -73,7 +74,8 @@ class Snapshot:
         moving = [array for name, array in system.grains.arrays().items() if name not in STEADY + LISTED]
         for group in (pairs, walls):
             moving += [getattr(group, name) for name in HISTORY]
-        moving += [pairs.crossing, walls.px, walls.py, walls.force, system.impulse]
+        moving += [getattr(walls, name) for name in OF_WALLS]
+        moving += [pairs.crossing, system.impulse]
         if ledger is not None:
             moving += [ledger.loss, ledger.prescribed_work]
         if system.facets is not None:

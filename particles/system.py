@@ -21,10 +21,12 @@ from particles.kernels.layout import (
     GrainArrays,
     LeadArrays,
     LedgerArrays,
+    ShakingNumbers,
 )
 from particles.kernels.motion import kick
 from particles.neighbours import LISTS_PER_SORT, ContactList, block_starts
 from particles.periodic import checked_period
+from particles.shaking import Shaking
 from particles.snapshot import Snapshot
 from particles.state import Grains
 from particles.walls import Wall
@@ -66,6 +68,8 @@ class ParticleSystem:
     time_step : float
         dt [s].
     walls : sequence of Wall
+    shaking : Shaking, optional
+        Motion of the walls that are `shaken`.
     facets : Facets, optional
         A polyline that moves with its nodes; not together with a period.
     gravity : (2,) floats
@@ -95,6 +99,7 @@ class ParticleSystem:
         *,
         time_step: float,
         walls: Sequence[Wall] = (),
+        shaking: Shaking | None = None,
         facets: Facets | None = None,
         gravity: Sequence[float] = (0.0, 0.0),
         damping: GlobalDamping | None = None,
@@ -112,6 +117,8 @@ class ParticleSystem:
         self.grains = grains
         self.contact = contact
         self.walls = tuple(walls)
+        self.shaking = shaking
+        self._shaken = _shaking_of(shaking, self.walls)
         self.time_step = float(time_step)
         if scheme not in SCHEMES:
             raise ParticleError(f"scheme {scheme!r} must be one of {', '.join(SCHEMES)}")
@@ -178,8 +185,9 @@ class ParticleSystem:
         while True:
             arrays, listed = self._arrays(), self.list
             done, drifted = step(
-                arrays, listed.pairs, listed.walls, self._facets(), self.gravity, *laws, damping, self._lead(),
-                self.ledger, bool(drifted), listed.reach2, left, self.time_step, self.threads if threaded else 1,
+                arrays, listed.pairs, listed.walls, self._shaken, self._facets(), self.gravity, *laws, damping,
+                self._lead(), self.ledger, self.steps_done, bool(drifted), listed.reach2, left, self.time_step,
+                self.threads if threaded else 1,
             )  # fmt: skip
             left -= done
             self.steps_done += done
@@ -386,6 +394,18 @@ def continued(saved: Mapping[str, NDArray[Any]], grains: Grains, contact: Contac
     system._started = True
     system._rebuild()
     return system
+
+
+def _shaking_of(shaking: Shaking | None, walls: Sequence[Wall]) -> ShakingNumbers | None:
+    """What the kernels need of the shaking; refused if there is no wall to shake, or walls and no shaking."""
+    shaken = [wall.name for wall in walls if wall.shaken]
+    if (shaking is None) == bool(shaken):
+        raise ParticleError(
+            f"{shaken[0]} is shaken, but nothing says how: give shaking=Shaking(...)"
+            if shaken
+            else "shaking moves no wall: give Wall(..., shaken=True)"
+        )
+    return None if shaking is None else shaking.numbers(walls)
 
 
 def use_threads(threads: int) -> int:

@@ -26,6 +26,8 @@ class Wall:
         Row of a `ContactTable`.
     name : str
         For messages and tables.
+    shaken : bool
+        Whether it takes part in the `Shaking` of its system.
     """
 
     point: tuple[float, float]
@@ -33,6 +35,7 @@ class Wall:
     velocity: tuple[float, float] = (0.0, 0.0)
     material: int = 0
     name: str = "wall"
+    shaken: bool = False
 
     def __post_init__(self) -> None:
         for label, value in (("point", self.point), ("normal", self.normal), ("velocity", self.velocity)):

@@ -8,7 +8,7 @@ import numpy as np
 
 from coupled.balance import Balance, take_balance
 from coupled.model import Model
-from coupled.scene.history import unit_of
+from coupled.scene.history import intruder_columns, unit_of
 from particles import ContactLook
 
 
@@ -33,7 +33,7 @@ def observe(model: Model, start: dict[str, float] | None) -> Observation:
     if model.structure is not None:
         numbers |= _structure_numbers(model)
     if model.particles is not None and model.particles.grains.n_free:
-        numbers |= _grain_numbers(model, look)
+        numbers |= _grain_numbers(model, look) | _followed_numbers(model)
     numbers["ledger_error"], numbers["ledger_relative_error"] = balance.error, balance.relative_error
     if model.interface is not None:
         numbers |= _interface_numbers(model, balance)
@@ -82,6 +82,20 @@ def _structure_numbers(model: Model) -> dict[str, float]:
         "max_strain": peaks.strain,
         **{name: value for name, value in beyond.items() if value is not None},
     }
+
+
+def _followed_numbers(model: Model) -> dict[str, float]:
+    """Centres and velocities of the intruders, and the displacement of the walls that shake."""
+    system, numbers = model.particles, {}
+    for k, number in enumerate(model.followed):
+        grains = system.grains
+        at = int(np.nonzero(grains.number == number)[0][0])
+        of_grain = [float(array[at]) for array in (grains.x, grains.y, grains.vx, grains.vy)]
+        numbers |= dict(zip(intruder_columns(k), of_grain, strict=True))
+    if system.shaking is not None:
+        axis = "floor_x" if system.shaking.along[0] else "floor_y"
+        numbers[axis] = system.shaking.displacement(system.time)
+    return numbers
 
 
 def _grain_numbers(model: Model, look: ContactLook) -> dict[str, float]:

@@ -5,10 +5,12 @@ from coupled.scene.contact import Contact, Damping, Recipe
 from coupled.scene.find import find_scene, shipping_scenes
 from coupled.scene.grains import Box, Grains, SettledGrains, SizeClass
 from coupled.scene.interface import Interface, Row, RowUnder
+from coupled.scene.intruders import Intruder
 from coupled.scene.load import dump_scene, load_scene
 from coupled.scene.output import Output, Time
 from coupled.scene.scene import Scene
 from coupled.scene.schemes import Newmark
+from coupled.scene.shaking import Shaking
 from coupled.scene.shape import Beam, Tube
 from coupled.scene.structure import (
     Initial,
@@ -26,6 +28,7 @@ __all__ = [
     "Grains",
     "Initial",
     "Interface",
+    "Intruder",
     "Newmark",
     "Output",
     "Path",
@@ -37,6 +40,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "SettledGrains",
+    "Shaking",
     "SizeClass",
     "Structure",
     "Time",

@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag, model_validator
 
+from coupled.scene.intruders import Intruder
 from coupled.scene.types import Count, Fraction, Number, Positive, Table, Whole
 
 Wall = Literal["left", "right", "floor", "lid"]
+Axis = Literal["x", "y"]
+USUAL_WALLS: tuple[Wall, ...] = ("left", "right", "floor")
+ACROSS: dict[Axis, tuple[Wall, ...]] = {"x": ("left", "right"), "y": ("floor", "lid")}
 
 
 class Box(Table):
@@ -17,14 +21,42 @@ class Box(Table):
 
     width: Positive = Field(description="inner width of the box [m]")
     height: Positive = Field(description="inner height of the box [m]")
-    walls: tuple[Wall, ...] = Field(("left", "right", "floor"), description="sides with a wall")
+    walls: tuple[Wall, ...] = Field(USUAL_WALLS, description="sides with a wall")
+    periodic: tuple[Axis, ...] = Field((), description="axes along which the box repeats, instead of walls across them")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _write_walls(cls, data: Any) -> Any:
+        """Write the usual walls, without those across a periodic axis."""
+        if isinstance(data, dict) and isinstance(data.get("periodic"), (list, tuple)):
+            across = [wall for axis in data["periodic"] for wall in ACROSS.get(axis, ())]
+            return {"walls": [wall for wall in USUAL_WALLS if wall not in across], **data}
+        return data
+
+    @property
+    def period(self) -> tuple[float | None, float | None]:
+        """Lengths after which x and y repeat [m]."""
+        return (self.width if "x" in self.periodic else None, self.height if "y" in self.periodic else None)
 
 
 class SizeClass(Table):
-    """Equal grains."""
+    """Equal grains, or grains of equally probable radii about a mean."""
 
     radius: Positive = Field(description="grain radius [m]")
     count: Count = Field(description="number of grains of this radius")
+    spread: Annotated[Number, Field(ge=0, lt=1)] = Field(
+        0.0, description="radii lie between 1 - spread and 1 + spread of the radius, uniformly [-]"
+    )
+
+    @property
+    def smallest(self) -> float:
+        """Smallest possible radius [m]."""
+        return self.radius * (1.0 - self.spread)
+
+    @property
+    def largest(self) -> float:
+        """Largest possible radius [m]."""
+        return self.radius * (1.0 + self.spread)
 
 
 class Grains(Table):
@@ -48,25 +80,26 @@ class Grains(Table):
     @property
     def smallest_radius(self) -> float:
         """Smallest grain radius [m]."""
-        return min(size.radius for size in self.sizes)
+        return min(size.smallest for size in self.sizes)
 
     @property
     def largest_radius(self) -> float:
         """Largest grain radius [m]."""
-        return max(size.radius for size in self.sizes)
+        return max(size.largest for size in self.sizes)
 
     @property
     def smallest_mass(self) -> float:
         """Mass of the smallest grain, ``pi r^2 rho`` [kg/m]."""
         return math.pi * self.smallest_radius**2 * self.density
 
-    def lattice_capacity(self, box: Box) -> int:
-        """Return the number of lattice places in ``box``."""
+    def lattice_capacity(self, box: Box, intruders: tuple[Intruder, ...] = ()) -> int:
+        """Return the number of lattice places in ``box``, at least, that intruders leave."""
         pitch = self.spacing * 2 * self.largest_radius
         # one part in 1e9 keeps a box of exactly n pitches from losing a column to rounding
         columns = math.floor(box.width / pitch * (1 + 1e-9))
         rows = math.floor(box.height / pitch * (1 + 1e-9))
-        return columns * rows
+        taken = sum((math.ceil(2 * intruder.radius / pitch) + 1) ** 2 for intruder in intruders)
+        return max(columns * rows - taken, 0)
 
 
 class SettledGrains(Table):

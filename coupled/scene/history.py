@@ -26,6 +26,8 @@ UNITS = {
     "deepest_overlap": "-",
     "fastest_grain": "m/s",
     "highest_grain": "m",
+    "floor_x": "m",
+    "floor_y": "m",
     "ledger_error": "J/m",
     "ledger_relative_error": "-",
     "interface_residual": "J/m",
@@ -52,7 +54,15 @@ _STRUCTURE_ENERGIES = ("structure_kinetic", "structure_strain", "structure_loss_
 
 def unit_of(column: str) -> str:
     """Unit of a column of the history."""
+    if column.startswith("intruder_"):
+        return "m/s" if column.endswith(("_vx", "_vy")) else "m"
     return UNITS.get(column, ENERGY)
+
+
+def intruder_columns(index: int) -> tuple[str, ...]:
+    """Place and velocity of an intruder, numbered from 0."""
+    name = "intruder" if index == 0 else f"intruder_{index + 1}"
+    return tuple(f"{name}_{part}" for part in ("x", "y", "vx", "vy"))
 
 
 def history_columns(scene: Scene) -> tuple[str, ...]:
@@ -62,6 +72,9 @@ def history_columns(scene: Scene) -> tuple[str, ...]:
         names += [*_STRUCTURE, *_OF_THEORY.get(scene.structure.theory or "", ())]
     if scene.grains is not None:
         names += _FREE_GRAINS
+        names += [column for k in range(len(scene.intruders)) for column in intruder_columns(k)]
+    if scene.shaking is not None:
+        names.append(f"floor_{scene.shaking.direction}")
     names += ["ledger_error", "ledger_relative_error"]
     if scene.interface is not None:
         names += _interface_columns(scene)

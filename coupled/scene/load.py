@@ -17,14 +17,14 @@ from coupled.scene.overrides import apply_override, parse_override
 from coupled.scene.refusal import translate
 from coupled.scene.scene import Scene
 
-INHERITED = ("units", "gravity", "box", "contact", "damping")
+INHERITED = ("units", "gravity", "box", "intruders", "contact", "damping")
 _BED = "bed"
 
 
 def load_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
     """Read, complete and check a scene.
 
-    A scene that names a bed takes `units`, `gravity`, `box`, `contact` and `damping` from it
+    A scene that names a bed takes `units`, `gravity`, `box`, `intruders`, `contact` and `damping` from it
     unless it has its own; if its own `contact` has nothing but `pairs`, they are added to the bed's
     contact law. Overrides act after that; those that start with ``bed.`` act on the bed. The rows of a
     CSV file that a load's schedule names become part of the scene.

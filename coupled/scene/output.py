@@ -30,6 +30,9 @@ class Time(Table):
     safety: Annotated[Number, Field(gt=0, le=1)] | None = Field(
         None, description=f'share of that limit for step = "auto" [-]; absent: {SAFETY:g}'
     )
+    integrator: Literal["leapfrog", "velocity_verlet"] = Field(
+        "leapfrog", description="scheme of the grains; velocity_verlet shows dashpots the velocity of the present"
+    )
     stop_at_rest: Positive | None = Field(
         None,
         description="stop when the mean kinetic energy per grain over the mean m |g| d falls below this [-]",

@@ -9,9 +9,11 @@ from pydantic import Field, model_validator
 from coupled.scene.contact import Contact, Damping
 from coupled.scene.grains import AnyGrains, Box, Grains
 from coupled.scene.interface import AnyRow, Interface
+from coupled.scene.intruders import Intruder
 from coupled.scene.output import Output, Time
 from coupled.scene.quantities import Quantity
 from coupled.scene.rules import check_rules
+from coupled.scene.shaking import Shaking
 from coupled.scene.structure import Structure
 from coupled.scene.types import Table, Vector
 
@@ -27,8 +29,10 @@ class Scene(Table):
     units: Literal["SI", "dimensionless"] = Field("SI", description="units of all numbers")
     gravity: Vector = Field((0.0, 0.0), description="acceleration of gravity [m/s2]")
     time: Time = Field(description="duration and step")
-    box: Box | None = Field(None, description="rigid walls")
+    box: Box | None = Field(None, description="rigid walls and periodic sides")
     grains: AnyGrains | None = Field(None, description="free grains")
+    intruders: tuple[Intruder, ...] = Field((), description="grains of their own size and density, followed")
+    shaking: Shaking | None = Field(None, description="motion of the walls")
     contact: Contact | None = Field(None, description="contact law")
     damping: Damping | None = Field(None, description="global damping of the grains")
     structure: Structure | None = Field(None, description="structure")

@@ -9,6 +9,7 @@ from particles.kernels.jit import kernel, threaded_kernel
 from particles.kernels.laws.response import Laws
 from particles.kernels.laws.tangential import present
 from particles.kernels.motion import add_incoming, drift, kick, prescribed_work
+from particles.kernels.shaking import shake
 
 
 @kernel
@@ -53,14 +54,18 @@ def block_drift(b, grains, tangential, ledger, reach2, dt):
 
 
 @kernel
-def move_walls(walls, reach2, dt):
-    """Move the walls. True if one went farther than sqrt(reach2) since the list was made."""
+def move_walls(walls, shaking, step, reach2, dt):
+    """Move the walls to a step. True if one went farther along its normal than sqrt(reach2) since the list was made."""
     stale = False
+    if shaking is not None:
+        shake(walls, shaking, step, dt)
     for w in range(walls.px.shape[0]):
-        walls.px[w] += dt * walls.vx[w]
-        walls.py[w] += dt * walls.vy[w]
+        if shaking is None or not shaking.moves[w]:
+            walls.px[w] += dt * walls.vx[w]
+            walls.py[w] += dt * walls.vy[w]
         dx, dy = walls.px[w] - walls.px_listed[w], walls.py[w] - walls.py_listed[w]
-        stale |= not (dx * dx + dy * dy <= reach2)
+        towards = dx * walls.nx[w] + dy * walls.ny[w]
+        stale |= not (towards * towards <= reach2)
     return stale
 
 
@@ -75,10 +80,10 @@ def _forces(grains, pairs, walls, facets, normal, tangential, rolling, lead, led
 
 
 def _advance(
-    grains, pairs, walls, facets, gravity, normal, tangential, rolling, damping, lead, ledger,
-    drifted, reach2, steps, dt, teams,
+    grains, pairs, walls, shaking, facets, gravity, normal, tangential, rolling, damping, lead, ledger,
+    done, drifted, reach2, steps, dt, teams,
 ):  # fmt: skip
-    """Up to `steps` leapfrog steps: drift, contact forces, kick.
+    """Up to `steps` leapfrog steps after the `done` ones: drift, contact forces, kick.
 
     Returns the number of steps done, and 1 if the list went stale: then the grains have drifted
     into the next step and wait for a new list (`drifted` at the next call). The kick of a step and
@@ -95,7 +100,7 @@ def _advance(
     if steps > 0 and not drifted:
         for b in numba.prange(n_blocks):
             stale[b] = block_drift(b, grains, tangential, ledger, reach2, dt)
-        if move_walls(walls, reach2, dt) | move_nodes(facets, ledger, reach2, dt) | stale.any():
+        if move_walls(walls, shaking, done + 1, reach2, dt) | move_nodes(facets, ledger, reach2, dt) | stale.any():
             return 0, 1
     for step in range(steps):
         drifts = step + 1 < steps
@@ -115,7 +120,10 @@ def _advance(
                         b, grains, pairs, gravity_x, gravity_y, tangential, damping, lead, ledger, reach2, drifts, dt
                     )
         receive_pushes(facets, ledger, dt)
-        if drifts and (move_walls(walls, reach2, dt) | move_nodes(facets, ledger, reach2, dt) | stale.any()):
+        if not drifts:
+            break
+        moved = move_walls(walls, shaking, done + step + 2, reach2, dt)
+        if moved | move_nodes(facets, ledger, reach2, dt) | stale.any():
             return step + 1, 1
     return steps, 0
 

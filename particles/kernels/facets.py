@@ -57,7 +57,7 @@ def facet_forces(b, grains, facets, laws, lead, ledger, dt):
         )
         now = Now(v_n, v_t, omega_r)
         if lead is not None:
-            now = now_at_wall(lead, i, nx, ny, arm, meeting)
+            now = now_at_wall(lead, i, 0.0, 0.0, nx, ny, arm, meeting)
         pair_laws = of_pair(laws, grains.material[i], facets.material[0])
         memory = Memory(f_old, m_old, d_n, d_t, d_r)
         response, own = touch(touching, pair_laws, ledger, meeting, now, memory, NOTHING_LOST, dt)

@@ -155,7 +155,7 @@ def wall_forces(b, grains, walls, laws, lead, ledger, dt):
         meeting = Meeting(delta, delta + v_n * dt, v_n, v_t, omega_r, ri, inverse_mass[i], compliance[i])
         now = Now(meeting.v_n, meeting.v_t, meeting.omega_r)
         if lead is not None:
-            now = now_at_wall(lead, i, nx, ny, arm, meeting)
+            now = now_at_wall(lead, i, walls.gain_x[w], walls.gain_y[w], nx, ny, arm, meeting)
         pair_laws = of_pair(laws, material[i], walls.material[w])
         memory = Memory(f_old, m_old, d_n, d_t, d_r)
         response, lost = touch(touching, pair_laws, ledger, meeting, now, memory, lost, dt)

@@ -83,8 +83,10 @@ class WallArrays(NamedTuple):
     py: Array
     nx: Array
     ny: Array
-    vx: Array
+    vx: Array  # (n_walls,) velocity at the half step before the present
     vy: Array
+    gain_x: Array  # (n_walls,) what that gains until the present, 0 for a constant velocity
+    gain_y: Array
     material: Array
     px_listed: Array  # (n_walls,) the point when the near grains were listed
     py_listed: Array
@@ -97,6 +99,22 @@ class WallArrays(NamedTuple):
     dash_n: Array  # (n_near,)
     dash_t: Array
     dash_r: Array
+
+
+class ShakingNumbers(NamedTuple):
+    """Motion of walls along a line, a waveform of the time since `start` (`kernels.shaking`)."""
+
+    moves: Array  # (n_walls,) bool
+    home_x: Array  # (n_walls,) the point of each wall at no displacement
+    home_y: Array
+    along_x: float  # unit vector of the motion
+    along_y: float
+    amplitude: float
+    period: float
+    start: float
+    stop: float  # infinite if it does not end
+    ramp: float
+    from_rest: bool  # 1 - cos, else sin
 
 
 class FacetArrays(NamedTuple):

@@ -17,8 +17,8 @@ def now_between(lead, i, j, nx, ny, arm_i, arm_j, meeting):
 
 
 @inner_kernel
-def now_at_wall(lead, i, nx, ny, arm, meeting):
-    """Of a grain and a wall."""
-    gx, gy, turn = lead.x[i], lead.y[i], lead.spin[i]
+def now_at_wall(lead, i, wall_x, wall_y, nx, ny, arm, meeting):
+    """Of a grain and a wall, whose velocity gains `wall_x`, `wall_y` until the present."""
+    gx, gy, turn = lead.x[i] - wall_x, lead.y[i] - wall_y, lead.spin[i]
     along = gy * nx - gx * ny + arm * turn
     return Now(meeting.v_n - gx * nx - gy * ny, meeting.v_t - along, meeting.omega_r + turn)

@@ -88,6 +88,19 @@ SURFACES: dict[str, Any] = {
         ],
     },
 }
+SHAKEN: dict[str, Any] = {
+    **GRAINS,
+    "title": "an intruder in a shaken box",
+    "grains": {"sizes": [{"radius": 2e-3, "count": 50, "spread": 0.05}], "density": 1600.0},
+    "intruders": [{"radius": 5e-3, "density": 800.0}, {"radius": 3e-3, "density": 1600.0, "y": 0.1}],
+    "shaking": {"gamma": 2.0, "period": 0.05},
+}
+PERIODIC: dict[str, Any] = {
+    **SHAKEN,
+    "title": "a shaken floor with periodic sides",
+    "box": {"width": 0.1, "height": 0.2, "periodic": ["x"]},
+    "shaking": {"amplitude": 1e-3, "period_steps": 5000, "waveform": "sine"},
+}
 GONE = object()
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from bad_scenes import BEAM_ON_ROW, GONE, GRAINS, HERTZ, RIGID, SURFACES, TUBE, Case, changed, require_refusal
+from bad_scenes import BEAM_ON_ROW, GONE, GRAINS, HERTZ, PERIODIC, RIGID, SHAKEN, SURFACES, TUBE, Case, changed, require_refusal
 
 from coupled.build import build
 from coupled.errors import QuantityError
@@ -32,6 +32,8 @@ GOOD: dict[str, dict[str, Any]] = {
     "corotational": changed(TUBE, {"structure.theory": "corotational"}),
     "large strain": changed(TUBE, {"structure.theory": "large_strain"}),
     "dissipating": changed(TUBE, {"structure.generalised_alpha": {}}),
+    "shaken": SHAKEN,
+    "shaken sideways": changed(PERIODIC, {"shaking.direction": "x"}),
     "not dissipating": changed(TUBE, {"structure.hht": {"alpha": 0.0}}),
     "damped newmark": changed(TUBE, {"structure.newmark": {"beta": 0.3025, "gamma": 0.6}}),
 }

@@ -12,6 +12,10 @@ from coupled.scene import SceneError, SettledGrains, dump_scene, load_scene, shi
 
 NAMES = (
     "bed",
+    "shaken_walls",
+    "shaken_smooth_walls",
+    "shaken_no_friction",
+    "shaken_periodic",
     "beam_vibration",
     "rolling_tube",
     "elastic_beam",

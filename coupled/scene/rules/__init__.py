@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 from coupled.scene.rules.contact import check_contact
 from coupled.scene.rules.grains import check_grains
 from coupled.scene.rules.interface import check_interface, check_rows
+from coupled.scene.rules.intruders import check_intruders, check_periodic
 from coupled.scene.rules.quantities import check_quantities
+from coupled.scene.rules.shaking import check_shaking
 from coupled.scene.rules.stability import check_step
 from coupled.scene.rules.structure import check_structure
 from coupled.scene.rules.whole import check_output, check_whole
@@ -26,6 +28,9 @@ def check_rules(scene: Scene) -> None:
     """
     check_whole(scene)
     check_grains(scene)
+    check_periodic(scene)
+    check_intruders(scene)
+    check_shaking(scene)
     check_contact(scene)
     check_structure(scene)
     check_interface(scene)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from coupled.scene.grains import Box, Grains
+from coupled.scene.intruders import Intruder
 from coupled.scene.refusal import Plain, missing, refusal
 
 if TYPE_CHECKING:
@@ -18,14 +19,14 @@ def check_grains(scene: Scene) -> None:
     if isinstance(scene.grains, Grains):
         if scene.bed is not None:
             raise refusal("bed", {}, "needs grains.bed; give that name or remove [bed]")
-        _check_laid_out(scene.grains, scene.box)
+        _check_laid_out(scene.grains, scene.box, scene.intruders)
     elif scene.grains is not None:
         _check_bed(scene, scene.grains.bed)
     elif scene.bed is not None:
         raise refusal("bed", {}, "serves no grains; add [grains] with bed, or remove [bed]")
 
 
-def _check_laid_out(grains: Grains, box: Box | None) -> None:
+def _check_laid_out(grains: Grains, box: Box | None, intruders: tuple[Intruder, ...]) -> None:
     if grains.layout == "list":
         _check_positions(grains, box)
         return
@@ -38,7 +39,7 @@ def _check_laid_out(grains: Grains, box: Box | None) -> None:
     if box is None:
         raise missing("box", "grains on a lattice need its width and height; add [box]")
     _check_size(grains, box)
-    capacity = grains.lattice_capacity(box)
+    capacity = grains.lattice_capacity(box, intruders)
     if grains.count > capacity:
         raise refusal(
             "grains.sizes",
@@ -50,7 +51,7 @@ def _check_laid_out(grains: Grains, box: Box | None) -> None:
 
 def _check_size(grains: Grains, box: Box) -> None:
     for index, size in enumerate(grains.sizes):
-        if 2 * size.radius > min(box.width, box.height):
+        if 2 * size.largest > min(box.width, box.height):
             raise refusal(
                 f"grains.sizes.{index}.radius",
                 size.radius,
@@ -68,10 +69,12 @@ def _check_positions(grains: Grains, box: Box | None) -> None:
     if box is None:
         return
     _check_size(grains, box)
-    radii = [size.radius for size in grains.sizes for _ in range(size.count)]
+    radii = [size.largest for size in grains.sizes for _ in range(size.count)]
+    margin_x, margin_y = (0.0 if axis in box.periodic else 1.0 for axis in "xy")
     for index, (row, radius) in enumerate(zip(grains.positions, radii, strict=True)):
         x, y = row[:2]
-        if not (radius <= x <= box.width - radius and radius <= y <= box.height - radius):
+        left, below = margin_x * radius, margin_y * radius
+        if not (left <= x <= box.width - left and below <= y <= box.height - below):
             raise refusal(
                 f"grains.positions.{index}",
                 list(row),
@@ -83,16 +86,22 @@ def _check_bed(scene: Scene, name: str) -> None:
     bed = scene.bed
     if bed is None:
         raise missing("bed", f'the scene "{name}" that settles the grains; load it from its file')
-    if bed.grains is None or bed.structure is not None or bed.rows:
+    if bed.grains is None or bed.structure is not None or bed.rows or bed.shaking is not None:
         raise refusal(
             "grains.bed",
             name,
             "is no bed, which settles free grains and nothing else; name a scene with [grains] and "
-            "without [structure] and [[rows]]",
+            "without [structure], [[rows]] and [shaking]",
         )
     if bed.units != scene.units:
         raise refusal("units", scene.units, f'differs from the bed\'s "{bed.units}"; use the same')
     own, settled = scene.box, bed.box
+    if own and settled and own.period != settled.period:
+        raise refusal(
+            "box.periodic",
+            list(own.periodic),
+            "repeats otherwise than the bed's box; remove [box] to take the bed's",
+        )
     if own and settled and own.width < settled.width:
         raise refusal(
             "box.width",

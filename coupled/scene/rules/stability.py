@@ -24,7 +24,8 @@ def check_step(scene: Scene) -> None:
     _check_auto(scene)
     if grains is None or contact is None or contact.normal_stiffness is None:
         return
-    mass, radius = grains.smallest_mass, grains.smallest_radius
+    mass = min([grains.smallest_mass, *(intruder.mass for intruder in scene.intruders)])
+    radius = min([grains.smallest_radius, *(intruder.radius for intruder in scene.intruders)])
     limits = {"2 sqrt(m_min/k_n)": 2 * math.sqrt(mass / contact.normal_stiffness)}
     if contact.tangential_stiffness is not None:
         limits["2 sqrt(m_min/(3 k_t))"] = 2 * math.sqrt(mass / (3 * contact.tangential_stiffness))

@@ -1,0 +1,109 @@
+"""Where the free grains of a scene start, and the walls around them with their motion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+import particles as dem
+from coupled.scene import Grains, Scene
+from coupled.scene.intruders import MIDDLE
+from coupled.scene.materials import materials
+from particles.beds import lattice
+
+Floats = NDArray[np.float64]
+
+
+def laid_out(scene: Scene) -> dem.Grains:
+    """The grains of a scene that lays them out itself, the intruders last."""
+    table = scene.grains
+    sizes = _sizes(table)
+    if table.layout == "list":
+        rows = np.array([(*row, *(0.0,) * (5 - len(row))) for row in table.positions])
+        radius = np.concatenate([np.full(count, size) for size, count in sizes])
+        places = _intruder_places(scene, float(rows[:, 1].min() + rows[:, 1].max()) / 2.0)
+        return _with_intruders(scene, rows[:, :2], radius, places, rows[:, 2:])
+    places = _intruder_places(scene, _middle_of_lattice(scene))
+    holes = [(x, y, intruder.radius) for (x, y), intruder in zip(places, scene.intruders, strict=True)]
+    loose = lattice(
+        sizes, table.density, width=scene.box.width, spacing=table.spacing, jitter=table.jitter, seed=table.seed,
+        holes=holes,
+    )  # fmt: skip
+    return _with_intruders(scene, loose.position, loose.radius, places, np.zeros((len(loose), 3)))
+
+
+def box_walls(scene: Scene) -> list[dem.Wall]:
+    """The walls of the box; those that shake are marked."""
+    if scene.box is None:
+        return []
+    walls = dem.box(scene.box.width, scene.box.height, scene.box.walls)
+    shaken: tuple[str, ...] = ()
+    if scene.shaking is not None:
+        shaken = scene.shaking.walls or scene.box.walls
+    of = materials(scene).index
+    return [replace(wall, material=of(wall.name), shaken=wall.name in shaken) for wall in walls]
+
+
+def shaking_of(scene: Scene) -> dem.Shaking | None:
+    """The motion of the walls."""
+    table = scene.shaking
+    if table is None:
+        return None
+    period = table.period_with(scene.time.step)
+    return dem.Shaking(
+        amplitude=table.amplitude_of(period, scene.gravity),
+        period=period,
+        direction=(1.0, 0.0) if table.direction == "x" else (0.0, 1.0),
+        from_rest=table.waveform == "cosine",
+        start=table.start,
+        stop=table.stop,
+        ramp=period if table.ramp is None else table.ramp,
+    )
+
+
+def _sizes(table: Grains) -> list[tuple[float, int]]:
+    """Radii [m] and their counts; each drawn by the seed where a class has a spread."""
+    sizes: list[tuple[float, int]] = []
+    draw = np.random.default_rng([table.seed, len(table.sizes)])
+    for size in table.sizes:
+        if size.spread == 0.0:
+            sizes.append((size.radius, size.count))
+        else:
+            sizes += [(float(r), 1) for r in draw.uniform(size.smallest, size.largest, size.count)]
+    return sizes
+
+
+def _middle_of_lattice(scene: Scene) -> float:
+    """Half the height [m] of grains on a lattice and the intruders among them."""
+    table, width = scene.grains, scene.box.width
+    pitch = 2.0 * table.largest_radius * table.spacing
+    columns = max(int(width / pitch + 1e-9), 1)
+    taken = sum(math.pi * intruder.radius**2 for intruder in scene.intruders)
+    return 0.5 * (table.count * pitch / columns + taken / width)
+
+
+def _intruder_places(scene: Scene, middle: float) -> Floats:
+    """Centres (k, 2) [m] of the intruders; `middle` is the mean height of the grains."""
+    places = []
+    for intruder in scene.intruders:
+        x = 0.5 * scene.box.width if intruder.x == MIDDLE else intruder.x
+        y = max(middle, intruder.radius) if intruder.y == MIDDLE else intruder.y
+        places.append((x, y))
+    return np.array(places, float).reshape(-1, 2)
+
+
+def _with_intruders(scene: Scene, place: Floats, radius: Floats, places: Floats, motion: Floats) -> dem.Grains:
+    """Grains at `place` (n, 2) with `motion` (n, 3) of vx, vy, omega, and the intruders at rest at `places` (k, 2)."""
+    own = np.array([intruder.radius for intruder in scene.intruders])
+    density = [intruder.density for intruder in scene.intruders]
+    motion = np.concatenate([motion, np.zeros((len(own), 3))])
+    return dem.Grains.discs(
+        np.concatenate([place, places]),
+        np.concatenate([radius, own]),
+        np.concatenate([np.full(len(place), scene.grains.density), density]),
+        velocity=motion[:, :2],
+        spin=motion[:, 2],
+    )

@@ -1,0 +1,103 @@
+"""Walls that move to and fro."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from particles.errors import ParticleError, require
+from particles.kernels.layout import ShakingNumbers
+from particles.kernels.shaking import displacement
+from particles.walls import Wall
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaking:
+    """Harmonic motion of all walls that are `shaken`, along one line.
+
+    With ``u = (t - start)/period`` the displacement is ``A (1 - cos 2 pi u)``, from the lowest point and from rest,
+    or ``A sin 2 pi u``, times an envelope that rises within `ramp` from `start` on and falls within `ramp` from
+    `stop` on. It follows from the number of the step, not from a sum of increments: no drift, and the
+    same after any number of steps to the round-off of t/period. The velocity that contacts see
+    is the difference of two displacements over the step. Model 4.
+
+    Parameters
+    ----------
+    amplitude : float
+        A [m], half the stroke.
+    period : float
+        [s].
+    direction : (2,) floats
+        Of a positive displacement; normalised here.
+    from_rest : bool
+        The waveform 1 - cos; else sin, whose velocity jumps by ``2 pi A/period`` at the start unless there is a ramp.
+    start : float
+        When it begins [s].
+    stop : float, optional
+        When it ends [s]: with a ramp the envelope falls from then on, without one the period in hand is finished.
+    ramp : float
+        How long the envelope rises and falls [s], by ``3 s^2 - 2 s^3``; 0: at once.
+    """
+
+    amplitude: float
+    period: float
+    direction: tuple[float, float] = (0.0, 1.0)
+    from_rest: bool = True
+    start: float = 0.0
+    stop: float | None = None
+    ramp: float = 0.0
+
+    def __post_init__(self) -> None:
+        require("shaking amplitude", self.amplitude, above=0.0)
+        require("shaking period", self.period, above=0.0)
+        require("shaking start", self.start, at_least=0.0)
+        require("shaking ramp", self.ramp, at_least=0.0)
+        if self.stop is not None:
+            require("shaking stop", self.stop, above=self.start)
+        for number in self.direction:
+            require("shaking direction", number)
+        if not math.hypot(*self.direction) > 0.0:
+            raise ParticleError("shaking direction must not be zero: give (0, 1) for up and down")
+
+    @property
+    def along(self) -> tuple[float, float]:
+        """Unit vector of a positive displacement."""
+        length = math.hypot(*self.direction)
+        return (self.direction[0] / length, self.direction[1] / length)
+
+    def displacement(self, time: float) -> float:
+        """Displacement [m] at a time [s]."""
+        return float(displacement(self.numbers(()), time))
+
+    def numbers(self, walls: Sequence[Wall]) -> ShakingNumbers:
+        """What the kernels need, for the walls of a system."""
+        for wall in walls:
+            if wall.shaken and any(wall.velocity):
+                raise ParticleError(
+                    f"{wall.name} is shaken and has a velocity of its own, {wall.velocity}: leave out one of them"
+                )
+        home = np.array([wall.point for wall in walls], float).reshape(-1, 2)
+        return ShakingNumbers(
+            moves=np.array([wall.shaken for wall in walls], bool),
+            home_x=home[:, 0].copy(),
+            home_y=home[:, 1].copy(),
+            along_x=self.along[0],
+            along_y=self.along[1],
+            amplitude=float(self.amplitude),
+            period=float(self.period),
+            start=float(self.start),
+            stop=self._last(),
+            ramp=float(self.ramp),
+            from_rest=bool(self.from_rest),
+        )
+
+    def _last(self) -> float:
+        """When the envelope begins to fall, or without a ramp when the last whole period is over [s]."""
+        if self.stop is None:
+            return math.inf
+        if self.ramp > 0.0:
+            return float(self.stop)
+        # one part in 1e9 keeps a stop at a whole number of periods from adding another by round-off
+        periods = math.ceil((self.stop - self.start) / self.period * (1.0 - 1e-9))
+        return self.start + periods * self.period
