@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from coupled.cli import films, results, runs, scenes, studies
+from coupled.cli import films, measures, results, runs, scenes, studies
 from coupled.cli.speech import say
 from coupled.errors import Interrupted, is_sentence
 from coupled.running.launch import ranks
@@ -48,6 +48,7 @@ app.command("list")(scenes.list_scenes)
 app.command("new")(scenes.new)
 app.command("study")(studies.study)
 app.command("plot")(results.plot)
+app.command("measure")(measures.measure)
 app.command("animate")(films.animate)
 
 

@@ -96,7 +96,7 @@ class Record:
         turn = 2.0 * math.pi / period
         amplitude = table["amplitude"] if "amplitude" in table else table["gamma"] * self.gravity / turn**2
         gamma = amplitude * turn**2 / self.gravity if self.gravity else math.inf
-        return Shaken(period, table.get("start", 0.0) + _ramp(table), amplitude, gamma)
+        return Shaken(period, table.get("start", 0.0), amplitude, gamma)
 
     @property
     def intruders(self) -> int:
@@ -119,7 +119,7 @@ class Record:
         """Frames of "grains" or "structure", in time."""
         return sorted((self.folder / "frames").glob(f"{name}.*.h5"))
 
-    def frames(self, name: str, every: int = 1) -> Iterator[Frame]:
+    def frames(self, name: str, every: int) -> Iterator[Frame]:
         """Time [s] and arrays of every n-th frame, one at a time."""
         for path in self.frame_paths(name)[::every]:
             yield read_frame(path)
@@ -131,8 +131,3 @@ class Record:
             with h5py.File(path, "r") as file:
                 times.append(float(file.attrs["time"]))
         return np.array(times)
-
-
-def _ramp(table: dict[str, Any]) -> float:
-    """How long the amplitude grows [s]: the shaking counts from its end on."""
-    return float(table.get("ramp", 0.0))

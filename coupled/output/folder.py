@@ -20,7 +20,7 @@ SUMMARY = "summary.json"
 BEFORE_FAILURE = "before_failure.h5"
 OURS = (
     SCENE, SUMMARY, checkpoint.NAME, BEFORE_FAILURE, "history.csv", "grains.xdmf", "structure.xdmf", "provenance.json",
-    "log.txt", "frames", "figures",
+    "log.txt", "frames", "figures", "measures",
 )  # fmt: skip
 # When a run is taken up again:
 FREE_TO_CHANGE = (

@@ -134,7 +134,7 @@ def _view(record: Record, every: int) -> View:
             if length is not None:
                 low[axis], high[axis] = 0.0, length
     margin = 0.02 * float((high - low).max())
-    first = next(record.frames("grains"), None)
+    first = next(record.frames("grains", 1), None)
     return View(low=low - margin, high=high + margin, colours=_colours(record, first))
 
 

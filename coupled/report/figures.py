@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from coupled.errors import LeitoError
+from coupled.measuring.measure import draw_run
 from coupled.output import history
 from coupled.output.folder import SCENE
 from coupled.output.frames import read_frame
@@ -40,6 +41,8 @@ def plot_run(folder: Path) -> list[Path]:
             figure.savefig(target, dpi=150)
             plt.close(figure)
             drawn.append(target)
+    if "shaking" in run.scene:
+        drawn += draw_run(folder, folder / "figures")
     return drawn
 
 

@@ -144,7 +144,7 @@ class Cumulants:
         lambda(k) [-]; not a number where fewer than 40 windows carry the mean.
     v, rate : (m,)
         Of the Legendre transform: ``v = d lambda/dk`` [m], ``I = k v - lambda`` [-], with the same half width: at its
-        maximum k does not count.
+        maximum k does not count. About the mean it falls to zero; the error is of second order there.
     """
 
     k: Floats

@@ -1,0 +1,244 @@
+"""Pictures of the measures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from coupled.measuring.findings import Findings
+from coupled.measuring.rises import Rise, height_over_floor
+from coupled.measuring.states import Rolls
+from coupled.report.drawing import Axes, Figure, plt
+from particles import ParticleError
+from particles.measures import portrait, strobe
+
+WIDTH = 7.0
+COLOURS = ("#1f5a94", "#c1440e", "#2a9d8f", "#7b4b94", "#e09f3e", "#5d6d7e")
+FEWEST_ROWS = 8  # of the history in a period, for a portrait
+
+
+def draw_all(found: Sequence[Findings], folder: Path) -> list[Path]:
+    """Draw what there is; returns the paths of the pictures."""
+    folder.mkdir(parents=True, exist_ok=True)
+    pictures = {"height": heights(found), "rise_rate": rise_rates(found), "profiles": profiles(found)}
+    for number, one in enumerate(found):
+        more = "" if len(found) == 1 else f"_{number + 1}"
+        pictures |= {
+            f"convection{more}": convection(one),
+            f"portrait{more}": phase_portrait(one),
+            f"large_deviation{more}": large_deviation(one),
+        }
+    drawn = []
+    for name, figure in pictures.items():
+        if figure is not None:
+            drawn.append(folder / f"{name}.png")
+            figure.savefig(drawn[-1], dpi=150)
+            plt.close(figure)
+    return drawn
+
+
+def _title(found: Sequence[Findings]) -> str:
+    return found[0].group.records[0].title if len(found) == 1 else f"{len(found)} cases"
+
+
+def _length(found: Sequence[Findings], text: str) -> str:
+    unit = found[0].group.records[0].unit
+    return text if unit == "-" else f"{text} [{unit}]"
+
+
+def _curves(found: Sequence[Findings]) -> list[tuple[str, Rise, str]]:
+    """Label, rise and colour of every intruder of every group."""
+    several = any(len(one.rises) > 1 for one in found)
+    names = [(one, rise) for one in found for rise in one.rises]
+    return [
+        (f"{one.group.label}, {rise.name}" if several else one.group.label, rise, COLOURS[k % len(COLOURS)])
+        for k, (one, rise) in enumerate(names)
+    ]
+
+
+def heights(found: Sequence[Findings]) -> Figure | None:
+    """Height once a period: samples thin, their mean thick with its 95 % interval."""
+    curves = _curves(found)
+    if not curves:
+        return None
+    figure, axes = plt.subplots(figsize=(WIDTH, 4.2), layout="constrained")
+    shaken = found[0].group.records[0].shaken
+    for label, rise, colour in curves:
+        for sample in rise.samples:
+            axes.plot((sample.time - shaken.start) / shaken.period, sample.value, color=colour, lw=0.6, alpha=0.35)
+        period = (rise.time - shaken.start) / shaken.period
+        told = f"{label}, {len(rise.samples)} sample{'s' * (len(rise.samples) > 1)}"
+        axes.plot(period, rise.mean, color=colour, lw=2.0, label=told)
+        if len(rise.samples) > 1:
+            low, high = rise.mean - rise.half_width, rise.mean + rise.half_width
+            axes.fill_between(period, low, high, color=colour, alpha=0.15, lw=0)
+    axes.set(xlabel="periods of shaking", ylabel=_length(found, "height of the intruder over the floor"))
+    axes.set_title(_title(found), fontsize=10)
+    axes.legend(fontsize=8, frameon=False)
+    axes.grid(alpha=0.25)
+    return figure
+
+
+def rise_rates(found: Sequence[Findings]) -> Figure | None:
+    """Mean rise per period in windows of a tenth of the record, with the 95 % interval of the whole."""
+    curves = _curves(found)
+    if not curves:
+        return None
+    figure, axes = plt.subplots(figsize=(WIDTH, 3.6), layout="constrained")
+    for label, rise, colour in curves:
+        window = max(1, len(rise.time) // 10)
+        mean = rise.mean[::window]
+        middle = np.arange(len(mean) - 1) * window + 0.5 * window
+        axes.plot(middle, np.diff(mean) / window, "o-", color=colour, ms=4, lw=1.2, label=label)
+        axes.axhline(rise.rate.mean, color=colour, lw=0.8, ls="--")
+        if rise.rate.count > 1:
+            axes.axhspan(rise.rate.low, rise.rate.high, color=colour, alpha=0.08, lw=0)
+    axes.axhline(0.0, color="0.4", lw=0.8)
+    axes.set(xlabel="periods of shaking", ylabel=_length(found, "rise per period"))
+    axes.set_title(f"{_title(found)}: means over windows, dashed the whole with its 95 % interval", fontsize=9)
+    axes.legend(fontsize=8, frameon=False)
+    axes.grid(alpha=0.25)
+    return figure
+
+
+def profiles(found: Sequence[Findings]) -> Figure | None:
+    """Packing fraction, coordination and temperatures over the height."""
+    shown = [one for one in found if one.profiles is not None]
+    if not shown:
+        return None
+    figure, panels = plt.subplots(1, 3, figsize=(WIDTH + 1.0, 4.4), sharey=True, layout="constrained")
+    for k, one in enumerate(shown):
+        own, colour = one.profiles, COLOURS[k % len(COLOURS)]
+        for axes, names in zip(
+            panels, (("packing",), ("coordination",), ("temperature", "spin_temperature")), strict=True
+        ):
+            for name, style in zip(names, ("-", "--"), strict=False):
+                label = one.group.label if len(names) == 1 else name.replace("_", " ")
+                mean, half = own.mean[name], own.half_width[name]
+                axes.plot(mean, own.y, style, color=colour, lw=1.4, label=label)
+                if np.isfinite(half).any():
+                    axes.fill_betweenx(own.y, mean - half, mean + half, color=colour, alpha=0.15, lw=0)
+    panels[0].set(xlabel="packing fraction", ylabel=_length(found, "height over the floor"), xlim=(0.0, None))
+    panels[1].set(xlabel="contacts per grain", xlim=(0.0, None))
+    panels[2].set(xlabel="temperature over mean mass")
+    if any((one.profiles.mean["temperature"] > 0.0).any() for one in shown):
+        panels[2].set_xscale("log")
+    (panels[0] if len(shown) > 1 else panels[2]).legend(fontsize=7, frameon=False)
+    figure.suptitle(f"{_title(found)}: means of {sum(one.profiles.frames for one in shown)} frames", fontsize=10)
+    return figure
+
+
+def convection(one: Findings) -> Figure | None:
+    """Displacement per period: colour by its vertical part, streamlines."""
+    if one.rolls is None:
+        return None
+    cells, field = one.rolls.cells, one.rolls.field
+    extent = (cells.left, cells.left + cells.width, cells.bottom, cells.bottom + cells.height)
+    shape = min(max(cells.height / cells.width, 0.3), 1.4)
+    figure, axes = plt.subplots(figsize=(WIDTH, 0.8 * WIDTH * shape + 1.0), layout="constrained")
+    up = field.displacement[..., 1]
+    limit = float(np.nanquantile(np.abs(up), 0.98)) or 1.0
+    shown = axes.imshow(up, origin="lower", extent=extent, cmap="RdBu_r", vmin=-limit, vmax=limit, aspect="equal")
+    _streamlines(axes, one.rolls)
+    figure.colorbar(shown, ax=axes, label=_length([one], "rise per period"), shrink=0.8)
+    axes.set(
+        xlabel=_length([one], "x"), ylabel=_length([one], "height over the floor"), xlim=extent[:2], ylim=extent[2:]
+    )
+    roll = one.rolls.roll
+    told = f"{roll.mean:.3g}" + (f" +- {roll.half_width:.2g}" if roll.count > 1 else "")
+    axes.set_title(f"{one.group.label}: middle over sides {told} per period", fontsize=10)
+    return figure
+
+
+def _streamlines(axes: Axes, rolls: Rolls) -> None:
+    cells, flow = rolls.cells, rolls.field.displacement
+    if cells.rows < 2:
+        return
+    speed = np.hypot(flow[..., 0], flow[..., 1])
+    top = float(np.nanmax(speed)) or 1.0
+    u, v = (np.ma.masked_invalid(flow[..., k]) for k in range(2))
+    width = 0.4 + 1.6 * np.nan_to_num(speed) / top
+    axes.streamplot(cells.x, cells.y, u, v, color="0.15", linewidth=width, density=1.2, arrowsize=0.8)
+
+
+def phase_portrait(one: Findings) -> Figure | None:
+    """The first sample's intruder over the phase: height over the floor less its rise, and velocity against it."""
+    record = one.group.records[0]
+    if not one.rises or record.shaken is None:
+        return None
+    rise, shaken, time = one.rises[0], record.shaken, record.history["time"]
+    if len(time) < 2 or shaken.period / float(np.median(np.diff(time))) < FEWEST_ROWS - 0.01:
+        return None
+    height, on = height_over_floor(record, rise.name), time >= rise.samples[0].time[0]
+    level = strobe(time, height, period=shaken.period, start=shaken.start)
+    swing = (height - np.interp(time, level.time, level.value))[on]
+    speed = record.history.get(f"{rise.name}_vy", np.gradient(height, time))[on]
+    figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH + 1.0, 3.8), layout="constrained")
+    try:
+        seen = portrait(time[on], swing, period=shaken.period, start=shaken.start, bins=min(32, FEWEST_ROWS))
+    except ParticleError:
+        return None
+    left.plot(seen.phase, seen.value, ".", ms=2, color=COLOURS[0], alpha=0.4)
+    left.plot((np.arange(len(seen.mean)) + 0.5) / len(seen.mean), seen.mean, "k-", lw=1.2)
+    left.set(xlabel="phase of the shaking", ylabel=_length([one], "height over the floor, rise taken out"))
+    points = right.scatter(swing, speed, c=seen.phase, s=3, cmap="twilight", vmin=0.0, vmax=1.0)
+    figure.colorbar(points, ax=right, label="phase")
+    right.set(xlabel=_length([one], "height over the floor, rise taken out"), ylabel="vertical velocity")
+    figure.suptitle(f"{one.group.label}: {rise.name}, {record.title}", fontsize=9)
+    return figure
+
+
+def large_deviation(one: Findings) -> Figure | None:
+    """Histograms of all windows, their limit, the transform, and the symmetry where there is one."""
+    rise = next((rise for rise in one.rises if not rise.deviations.lacks), None)
+    if rise is None:
+        return None
+    found = rise.deviations
+    figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH + 2.0, 4.2), layout="constrained")
+    tones = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, len(found.curves)))
+    for curve, tone in zip(found.curves, tones, strict=True):
+        left.errorbar(
+            curve.v, curve.rate, curve.half_width, fmt="o-", ms=3, lw=0.8, elinewidth=0.6, color=tone,
+            label=f"{curve.periods} period{'s' * (curve.periods > 1)}",
+        )  # fmt: skip
+    if np.isfinite(found.limit.rate).sum() > 1:
+        left.errorbar(
+            found.limit.v,
+            found.limit.rate,
+            found.limit.half_width,
+            fmt="ks",
+            ms=4,
+            mfc="none",
+            label="limit of the line",
+        )
+    chosen = found.tilted[found.settled or found.lengths[-1]]
+    known = np.isfinite(chosen.rate)
+    left.plot(chosen.v[known], chosen.rate[known], "r-", lw=1.4, label="Legendre transform")
+    left.set(xlabel=_length([one], "rise per period v"), ylabel="I(v)")
+    left.set_ylim(bottom=min(0.0, left.get_ylim()[0]))
+    left.legend(fontsize=7, frameon=False)
+    _draw_symmetry(right, one, rise, tones)
+    figure.suptitle(f"{one.group.label}: {rise.name}, {len(rise.samples)} samples", fontsize=10)
+    return figure
+
+
+def _draw_symmetry(axes: Axes, one: Findings, rise: Rise, tones: np.ndarray) -> None:
+    found = rise.deviations
+    for each, tone in zip(found.symmetries, tones, strict=True):
+        if each.points is not None:
+            points = each.points
+            axes.errorbar(points.v, points.ratio, points.half_width, fmt="o", ms=3, elinewidth=0.6, color=tone)
+            axes.plot([0.0, points.v.max()], [0.0, each.slope * points.v.max()], "-", lw=0.8, color=tone)
+    seen = [each for each in found.symmetries if each.slope is not None]
+    if seen:
+        slope, half = found.slope if found.slope is not None else (seen[-1].slope, seen[-1].half_width)
+        told = f"slope {slope:.3g} +- {half:.2g}" if math.isfinite(half) else f"slope {slope:.3g}"
+        axes.set_title(told, fontsize=9)
+        axes.set(xlabel=_length([one], "|v|"), ylabel="ln(P(v)/P(-v))/n")
+        axes.grid(alpha=0.25)
+    else:
+        axes.axis("off")
+        axes.text(0.5, 0.5, "no left tail:\nno symmetry can be seen", ha="center", va="center", fontsize=9)

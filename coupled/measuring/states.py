@@ -1,0 +1,225 @@
+"""Profiles over the height, and convection in cells, from the frames of a group of runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from coupled.campaign.statistics import Interval, confidence
+from coupled.measuring.record import FREE, Floats, Frame, Record
+from coupled.measuring.rises import Periods
+from coupled.measuring.samples import Group, intervals
+from coupled.output.frames import read_frame
+from particles import ParticleError
+from particles.measures import (
+    Cells,
+    Convection,
+    MovingGrains,
+    convection,
+    coordination_in_strips,
+    fraction_in_strips,
+    granular_temperature,
+)
+
+STRIP, TEMPERATURE_CELL, CONVECTION_CELL = 1.0, 4.0, 2.5  # mean diameters
+LOOKED_AT = 10  # frames for the extent of the bed
+SAME_PHASE = 0.01  # of a period, within which frames are of one phase
+PROFILES = ("packing", "coordination", "temperature", "spin_temperature")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Profiles:
+    """Over the heights y (k,) of strips above the floor [m]: means and half widths (k,) by the names of `PROFILES`.
+
+    Packing and coordination [-]; temperatures [J/m] over the mass of a mean grain, [m2/s2].
+    """
+
+    y: Floats
+    mean: dict[str, Floats]
+    half_width: dict[str, Floats]
+    frames: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rolls:
+    """Convection in cells, displacements per period, over all samples; the roll of each sample as an interval [m]."""
+
+    cells: Cells
+    field: Convection
+    roll: Interval
+
+
+def _own(record: Record, arrays: dict[str, np.ndarray]) -> np.ndarray:
+    """Free grains that are no intruders."""
+    own = arrays["body"] == FREE
+    own[record.intruder_places()] = False
+    return own
+
+
+def _lift(record: Record, time: float) -> float:
+    """Displacement of the floor [m] at a time [s]."""
+    if "floor_y" not in record.history:
+        return 0.0
+    return float(np.interp(time, record.history["time"], record.history["floor_y"]))
+
+
+def _counted(record: Record, periods: Periods) -> np.ndarray:
+    """Numbers of the frames within the periods that count; of a run that is not shaken, of the last frame."""
+    times, shaken = record.frame_times("grains"), record.shaken
+    if shaken is None:
+        return np.arange(len(times))[-1:]
+    period = (times - shaken.start) / shaken.period
+    last = np.inf if periods.last is None else periods.last
+    return np.nonzero((period > periods.first - SAME_PHASE) & (period < last + SAME_PHASE))[0]
+
+
+def frames_of(record: Record, periods: Periods) -> Iterator[Frame]:
+    """The frames that count, one at a time."""
+    for number in _counted(record, periods):
+        yield read_frame(record.frame_paths("grains")[number])
+
+
+def profiles_of(group: Group, periods: Periods) -> Profiles | None:
+    """Means over the frames of each run, then over the runs. None without frames of grains."""
+    sizes = [_extent(record, periods) for record in group.records]
+    if not all(size is not None for size in sizes):
+        return None
+    diameter = float(np.mean([size[2] for size in sizes]))
+    left, width = min(size[0] for size in sizes), max(size[1] for size in sizes)
+    rows = max(1, int(np.ceil(max(size[3] for size in sizes) / (STRIP * diameter))))
+    edges = STRIP * diameter * np.arange(rows + 1)
+    values: dict[str, list[Floats]] = {name: [] for name in PROFILES}
+    frames = 0
+    for record in group.records:
+        own, count = _profiles_of_run(record, periods, edges, left, width, diameter)
+        frames += count
+        for name, profile in own.items():
+            values[name].append(profile)
+    mean, half = {}, {}
+    for name in PROFILES:
+        mean[name], half[name], _ = intervals(values[name])
+    return Profiles(y=0.5 * (edges[:-1] + edges[1:]), mean=mean, half_width=half, frames=frames)
+
+
+def _extent(record: Record, periods: Periods) -> tuple[float, float, float, float] | None:
+    """Left side, width, mean diameter and highest grain over the floor [m]."""
+    left, right, top, diameter = np.inf, -np.inf, 0.0, None
+    counted = _counted(record, periods)
+    for number in counted[:: max(1, len(counted) // LOOKED_AT)]:
+        time, arrays = read_frame(record.frame_paths("grains")[number])
+        own = _own(record, arrays)
+        if not own.any():
+            return None
+        x, y = arrays["points"][own].T
+        r = arrays["radius"][own]
+        left, right = min(left, float((x - r).min())), max(right, float((x + r).max()))
+        top, diameter = max(top, float(np.quantile(y + r, 0.995)) - _lift(record, time)), 2.0 * float(r.mean())
+    if diameter is None:
+        return None
+    if record.box is not None:
+        left, right = 0.0, float(record.box["width"])
+    return left, right - left, diameter, top
+
+
+def _profiles_of_run(
+    record: Record, periods: Periods, edges: Floats, left: float, width: float, diameter: float
+) -> tuple[dict[str, Floats], int]:
+    rows, across = len(edges) - 1, max(1, round(width / (TEMPERATURE_CELL * diameter)))
+    # cells of the local mean are as high as several strips: a strip has the temperature of the cell it lies in
+    stack = max(1, round(TEMPERATURE_CELL / STRIP))
+    layers = -(-rows // stack)
+    cells = Cells(
+        left=left, width=width, height=layers * stack * float(edges[1]), columns=across, rows=layers,
+        period=(record.period[0], None),
+    )  # fmt: skip
+    packing, contacts, count = np.zeros(rows), np.zeros(rows), np.zeros(rows)
+    energy, turning, freedoms, spins = (np.zeros(layers) for _ in range(4))
+    frames = 0
+    for time, arrays in frames_of(record, periods):
+        lift, free, own = _lift(record, time), arrays["body"] == FREE, _own(record, arrays)
+        y = arrays["points"][:, 1] - lift
+        packing += fraction_in_strips(y[free], np.asarray(arrays["radius"], float)[free], edges, width)
+        held = coordination_in_strips(arrays["contacts"][own], y[own], edges)
+        contacts += np.nan_to_num(held.mean) * held.count
+        count += held.count
+        found = granular_temperature(_moving(arrays, own, lift), cells)
+        weight, spin_weight = np.maximum(found.count - 3.0, 0.0), np.maximum(found.count - 1.0, 0.0)
+        energy += np.nansum(found.translational * weight, axis=1)
+        turning += np.nansum(found.rotational * spin_weight, axis=1)
+        freedoms, spins = freedoms + weight.sum(axis=1), spins + spin_weight.sum(axis=1)
+        frames += 1
+    with np.errstate(invalid="ignore", divide="ignore"):
+        temperatures = [np.repeat(t / n, stack)[:rows] for t, n in ((energy, freedoms), (turning, spins))]
+        values = (packing / frames, contacts / count, *temperatures)
+    return dict(zip(PROFILES, values, strict=True)), frames
+
+
+def _moving(arrays: dict[str, np.ndarray], own: np.ndarray, lift: float) -> MovingGrains:
+    """Grains with masses over the mean one: equal densities, so that areas will do."""
+    x, y = np.array(arrays["points"][own], float).T
+    vx, vy = np.asarray(arrays["velocity"][own][:, :2], float).T
+    radius = np.asarray(arrays["radius"][own], float)
+    mass = radius**2 / np.mean(radius**2)
+    return MovingGrains(x, y - lift, vx, vy, np.asarray(arrays["spin"][own], float), mass, 0.5 * mass * radius**2)
+
+
+def rolls_of(group: Group, periods: Periods) -> Rolls:
+    """Convection of all runs of a group.
+
+    Raises
+    ------
+    ParticleError
+        If the frames are not a whole number of periods apart, or fewer than two.
+    """
+    sizes = [_extent(record, periods) for record in group.records]
+    if not all(size is not None for size in sizes):
+        raise ParticleError("no convection is seen: there are no frames of grains in the periods that count")
+    diameter = float(np.mean([size[2] for size in sizes]))
+    left, width, top = (f(size[k] for size in sizes) for f, k in ((min, 0), (max, 1), (max, 3)))
+    size = CONVECTION_CELL * diameter
+    cells = Cells(
+        left=left, width=width, height=top, columns=max(2, round(width / size)), rows=max(1, round(top / size)),
+        period=(group.records[0].period[0], None),
+    )  # fmt: skip
+    fields, rolls = [], []
+    for record in group.records:
+        apart = periods_between_frames(record, periods)
+        found = convection(_places(record, periods), cells)
+        fields.append(found._replace(displacement=found.displacement / apart, roll=found.roll / apart))
+        rolls.append(float(fields[-1].roll.mean()))
+    count = sum(found.count for found in fields)
+    total = sum(np.nan_to_num(found.displacement) * found.count[..., None] for found in fields)
+    with np.errstate(invalid="ignore"):
+        mean = total / count[..., None]
+    joined = Convection(mean, count, np.concatenate([found.roll for found in fields]))
+    return Rolls(cells=cells, field=joined, roll=confidence(rolls))
+
+
+def periods_between_frames(record: Record, periods: Periods) -> int:
+    """Periods from one frame to the next.
+
+    Raises
+    ------
+    ParticleError
+        If there are fewer than two frames, or they are not of one phase.
+    """
+    times = record.frame_times("grains")[_counted(record, periods)]
+    if len(times) < 2:
+        raise ParticleError(f"no convection is seen: {record.folder} has {len(times)} frames in the periods that count")
+    apart = np.diff(times) / record.shaken.period
+    whole = round(float(apart.mean()))
+    if whole < 1 or np.abs(apart - whole).max() > SAME_PHASE:
+        raise ParticleError(
+            f"no convection is seen: the frames of {record.folder} are {apart.min():.3g} to {apart.max():.3g} periods "
+            "apart; set output.frames_per_second to 1/period or a whole part of it"
+        )
+    return whole
+
+
+def _places(record: Record, periods: Periods) -> Iterator[Floats]:
+    for time, arrays in frames_of(record, periods):
+        points = np.array(arrays["points"][_own(record, arrays)], float)
+        points[:, 1] -= _lift(record, time)
+        yield points

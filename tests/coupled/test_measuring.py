@@ -1,0 +1,148 @@
+"""`leito measure` on runs made by hand, whose rises, rolls and profiles are known."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+from shaken_record import FINE, RADIUS, make
+from typer.testing import CliRunner
+
+from coupled.cli.app import app
+from coupled.errors import LeitoError
+from coupled.measuring.findings import find
+from coupled.measuring.measure import draw_run, measure
+from coupled.measuring.rises import Periods
+from coupled.measuring.samples import groups_of
+
+MEAN, SPREAD = 0.004, 0.02
+
+
+@pytest.fixture(scope="module")
+def ensemble(tmp_path_factory):
+    """Four samples of one case, one of another."""
+    folder, rng = tmp_path_factory.mktemp("ensemble"), np.random.default_rng(3)
+    for seed in (1, 2, 3, 4):
+        make(folder / "slow" / f"seed_{seed}", MEAN + SPREAD * rng.standard_normal(240), seed=seed, frames=2)
+    other = make(folder / "fast" / "seed_1", np.full(240, 0.05), frames=2)
+    text = (other / "scene.toml").read_text()
+    (other / "scene.toml").write_text(text.replace("amplitude = 0.5", "amplitude = 0.6"))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def found(ensemble):
+    return {one.group.label: one for one in find([ensemble], Periods())}
+
+
+def test_samples_of_one_scene_are_one_case(found):
+    assert {label: len(one.group.records) for label, one in found.items()} == {"slow": 4, "fast": 1}
+
+
+def test_the_floor_is_taken_out_of_the_rise(found):
+    (rise,) = found["fast"].rises
+    np.testing.assert_allclose(rise.samples[0].rise, 0.05, atol=1e-12)
+    np.testing.assert_allclose(rise.mean, 2.0 + 0.05 * np.arange(241), atol=1e-11)
+    assert rise.rate.mean == pytest.approx(0.05, rel=1e-12) and np.isnan(rise.half_width).all()
+
+
+def test_rise_and_symmetry_of_gaussian_increments(found):
+    (rise,) = found["slow"].rises
+    assert rise.rate.count == 4
+    # 960 increments: four standard errors; and the truth lies in intervals of the 95 % that this seed is among
+    assert rise.rate.mean == pytest.approx(MEAN, abs=4.0 * SPREAD / math.sqrt(960))
+    assert abs(rise.rate.mean - MEAN) < rise.rate.half_width
+    windows = rise.deviations
+    assert windows.lengths[:3] == (1, 2, 4) and not windows.lacks
+    slope, half = windows.slope
+    assert abs(slope - 2.0 * MEAN / SPREAD**2) < 1.5 * half
+    assert windows.settled == 1  # independent increments: single periods say it all
+    transform = windows.tilted[1]
+    known = np.isfinite(transform.rate)
+    expected = 0.5 * ((transform.v - MEAN) / SPREAD) ** 2
+    # about the mean the bars shrink to nothing: there the error is of second order, (error of the mean/spread)^2/2
+    second = 0.5 * 3.0**2 / 960
+    assert (np.abs(transform.rate - expected)[known] < 1.5 * transform.half_width[known] + second).all()
+    assert found["fast"].rises[0].deviations.lacks.startswith("all windows have the same mean")
+
+
+def test_rolls_and_profiles_of_the_frames(found):
+    for one in found.values():
+        a = 2.0 * math.pi / 8.0
+        # rise 0.02 a cos(a x) sin(pi y/4), over the halves of the width and the height: see test_convection_and_strobe
+        assert one.rolls.roll.mean == pytest.approx(2.0 * 0.02 * a * (2.0 / math.pi) ** 2, rel=1e-2)
+        profiles = one.profiles
+        inside = profiles.y < 1.3  # below the intruder and the upper edge of the lattice
+        dense = 2 * FINE * FINE * math.pi * RADIUS**2 / 32.0
+        # strips are 0.84 of the lattice's rows: their fractions beat about the mean of all
+        assert np.mean(profiles.mean["packing"][inside]) == pytest.approx(dense, rel=0.05)
+        assert (profiles.mean["coordination"][inside] == 4.0).all()
+        assert np.nanmax(np.abs(profiles.mean["temperature"])) < 1e-20
+
+
+def test_periods_are_chosen(ensemble):
+    (fast, _) = find([ensemble], Periods(first=100, last=200))
+    assert fast.group.label == "fast"
+    (rise,) = fast.rises
+    assert len(rise.samples[0].rise) == 100
+    assert rise.mean[0] == pytest.approx(2.0 + 0.05 * 100) and rise.mean[-1] == pytest.approx(2.0 + 0.05 * 200)
+    assert fast.rolls is None and "no frames of grains in the periods that count" in " ".join(fast.notes)
+
+
+def test_tables_and_pictures(ensemble, tmp_path):
+    found, written = measure([ensemble], out=tmp_path / "out", periods=Periods())
+    names = {path.name for path in written}
+    assert {"rises.csv", "height.csv", "profiles.csv", "convection.csv", "large_deviation.csv", "measures.json"} < names
+    assert {"height.png", "rise_rate.png", "profiles.png", "convection_1.png", "large_deviation_2.png"} < names
+    assert all(path.stat().st_size > 0 for path in written)
+    with open(tmp_path / "out" / "rises.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 5 * 241
+    last = [row for row in rows if row["case"] == "fast"][-1]
+    assert float(last["height"]) == pytest.approx(14.0) and last["rise"] == ""
+    numbers = {one["case"]: one for one in json.loads((tmp_path / "out" / "measures.json").read_text())}
+    assert numbers["fast"]["gamma"] == pytest.approx(0.6 * (2.0 * math.pi / 4.0) ** 2)
+    assert numbers["slow"]["intruders"][0]["rise_per_period"]["samples"] == 4
+    assert numbers["fast"]["intruders"][0]["rise_per_period"]["half_width"] is None
+
+
+def test_a_run_is_measured_alone_and_too_short_a_one_says_what_is_missing(tmp_path):
+    run = make(tmp_path / "run", np.full(30, 0.1))
+    pictures = {path.name for path in draw_run(run, tmp_path / "pictures")}
+    assert {"height.png", "rise_rate.png", "convection.png", "profiles.png", "portrait.png"} == pictures
+    short = make(tmp_path / "short", np.full(0, 0.1), frames=1)
+    (one,) = find([short], Periods())
+    assert not one.rises and one.rolls is None and one.profiles is not None
+    assert "run longer" in one.notes[0] and "1 frames" in one.notes[1]
+
+
+def test_frames_off_the_phase_make_no_convection(tmp_path):
+    run = make(tmp_path / "run", np.full(20, 0.1), frames=3, periods_per_frame=2)
+    text = (run / "scene.toml").read_text()
+    (run / "scene.toml").write_text(text.replace("period = 4.0", "period = 3.0"))
+    (one,) = find([run], Periods())
+    assert one.rolls is None
+    assert any("2.67 to 2.67 periods apart; set output.frames_per_second" in note for note in one.notes)
+
+
+def test_refusals(tmp_path):
+    with pytest.raises(LeitoError, match="no such folder"):
+        groups_of([tmp_path / "nowhere"])
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(LeitoError, match="holds no run"):
+        groups_of([tmp_path / "empty"])
+    with pytest.raises(LeitoError, match="nothing to measure.*no frames"):
+        find([make(tmp_path / "run", np.full(0, 0.1), frames=0)], Periods())
+    run = make(tmp_path / "other", np.full(5, 0.1))
+    (one,) = find([run], Periods(first=7))
+    assert "holds 5 periods, none of them from 7 to the end" in one.notes[0]
+
+
+def test_the_command_tells_means_and_notes(ensemble, tmp_path):
+    said = CliRunner().invoke(app, ["measure", str(ensemble), "--out", str(tmp_path / "out"), "--first", "20"])
+    assert said.exit_code == 0, said.output
+    assert "intruder: rise per period" in said.output and "4 samples" in said.output
+    assert "convection" in said.output
+    wrong = CliRunner().invoke(app, ["measure", str(ensemble), "--first", "20", "--last", "10"])
+    assert isinstance(wrong.exception, LeitoError) and "--last 10 must be greater" in str(wrong.exception)
