@@ -57,4 +57,5 @@ def study(
         progress=progress,
     )
     print_table(HEADER, done.rows())
+    print("\n".join(done.without_result()))
     print(f"written: {done.folder}/study.csv, study.md and a picture per quantity")

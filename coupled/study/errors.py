@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from coupled.campaign.statistics import Interval, confidence
-from coupled.study.reference import EXACT, Reference
+from coupled.study.reference import Reference
 from coupled.study.setting import Ran, Setting
 
 Verdict = Literal["resolved", "not resolved", "below the reference's own error", "one sample", "reference"]
@@ -71,7 +71,7 @@ def judge(ran: Ran, quantity: str, reference: Reference, *, chance: bool) -> Jud
     difference = _interval([value - right for value, right in zip(values, against, strict=False)])
     error, half_width = difference.mean / reference.scale, difference.half_width / reference.scale
     floor = reference.relative_error
-    is_reference = ran.setting.role == "reference" and reference.source != EXACT
+    is_reference = ran.setting.name == reference.source
     verdict = "reference" if is_reference else _verdict(abs(error), half_width, floor, chance and len(values) < 2)
     return Judged(
         ran=ran, quantity=quantity, value=own.mean, half_width=own.half_width, error=error,

@@ -12,7 +12,7 @@ from coupled.study.reference import EXACT, Reference, own_error, scale_of
 from coupled.study.setting import Ran
 
 
-def references(rans: Sequence[Ran], quantities: Sequence[Quantity]) -> dict[str, Reference]:
+def references(rans: Sequence[Ran], quantities: Sequence[Quantity], *, chance: bool) -> dict[str, Reference]:
     """The reference of each quantity: its closed form, or the finest setting that came to its end.
 
     Raises
@@ -20,13 +20,13 @@ def references(rans: Sequence[Ran], quantities: Sequence[Quantity]) -> dict[str,
     LeitoError
         If neither is there.
     """
-    return {quantity.name: _reference(rans, quantity) for quantity in quantities}
+    return {quantity.name: _reference(rans, quantity, chance) for quantity in quantities}
 
 
-def _reference(rans: Sequence[Ran], quantity: Quantity) -> Reference:
+def _reference(rans: Sequence[Ran], quantity: Quantity, chance: bool) -> Reference:
     name = quantity.name
     done = [ran for ran in rans if ran.done]
-    finest = _finest(done, name)
+    finest = _finest(done, name, chance)
     if quantity.exact is not None:
         return _closed_form(finest, quantity, _scale(done, quantity, quantity.exact))
     if finest is None:
@@ -36,7 +36,7 @@ def _reference(rans: Sequence[Ran], quantity: Quantity) -> Reference:
     return replace(finest, scale=_scale(done, quantity, finest.mean))
 
 
-def _finest(done: Sequence[Ran], name: str) -> Reference | None:
+def _finest(done: Sequence[Ran], name: str, chance: bool) -> Reference | None:
     """The finest level that is there, with its own error from the levels before it."""
     by_role = {ran.setting.role: ran for ran in done}
     chain = [by_role[role] for role in ("base", "finer", "reference") if role in by_role]
@@ -46,7 +46,10 @@ def _finest(done: Sequence[Ran], name: str) -> Reference | None:
     means = [sum(ran.values[name]) / len(ran.values[name]) for ran in chain]
     graded = bool(finest.setting.knobs)  # not one that the user has given
     error, order = own_error(means if graded else means[-1:])
-    return Reference(samples=finest.values[name], error=error, source=finest.setting.name, order=order, scale=1.0)
+    found = Reference(samples=finest.values[name], error=error, source=finest.setting.name, order=order, scale=1.0)
+    if graded and chance and judge(chain[-2], name, found, chance=True).verdict in ("not resolved", "one sample"):
+        return replace(found, error=0.0, order=None, open=True)
+    return found
 
 
 def _closed_form(finest: Reference | None, quantity: Quantity, scale: float) -> Reference:

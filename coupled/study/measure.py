@@ -9,7 +9,7 @@ from pathlib import Path
 from coupled.campaign import Outcome
 from coupled.errors import LeitoError
 from coupled.output import history
-from coupled.output.folder import SUMMARY
+from coupled.output.folder import SCENE, SUMMARY
 from coupled.quantities import evaluate
 from coupled.scene import Scene
 from coupled.study.setting import Ran, Setting
@@ -28,7 +28,9 @@ def came_to(setting: Setting, outcomes: Sequence[Outcome], base: Sequence[Path] 
     """
     for outcome in outcomes:
         if outcome.status != "done":
-            return Ran(setting=setting, status=outcome.status, message=outcome.message)
+            begun = (outcome.task.folder / SCENE).exists()
+            status = outcome.status if begun else "refused"
+            return Ran(setting=setting, status=status, message=outcome.message)
     folders = [outcome.task.folder for outcome in outcomes]
     try:
         samples = [_values(outcome.task.scene, outcome.task.folder) for outcome in outcomes]

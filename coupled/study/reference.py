@@ -25,6 +25,9 @@ class Reference:
         Where it comes from.
     order : float, optional
         Observed order of the levels, if it was seen.
+    open : bool
+        Whether chance hides what the level before it differs by: its error counts as none then, and its scatter
+        is in the intervals of the differences from it.
     scale : float
         What errors are divided by, in the quantity's unit.
     """
@@ -33,6 +36,7 @@ class Reference:
     error: float
     source: str
     order: float | None = None
+    open: bool = False
     scale: float
 
     @property

@@ -92,7 +92,11 @@ class Study:
 
     def rows(self) -> list[tuple[str, ...]]:
         """Rows for a terminal."""
-        return table.rows(self.rans, self.judged, self.units)
+        return table.rows(self.judged, self.units)
+
+    def without_result(self) -> list[str]:
+        """A line for each setting without values."""
+        return table.without_result(self.rans)
 
 
 def run_study(
@@ -198,7 +202,7 @@ def _further(case: Case, rans: Sequence[Ran], terms: Terms, plan: Plan) -> list[
     """Combinations along the front, as far as the budget goes."""
     if not any(ran.done and ran.setting.role == "base" for ran in rans):
         return []
-    judged = judge_all(rans, references(rans, case.quantities), chance=bool(case.seeds))
+    judged = judge_all(rans, references(rans, case.quantities, chance=bool(case.seeds)), chance=bool(case.seeds))
     found: list[Setting] = []
     for setting in combinations(judged, case.turned(), case.load, terms.trial):
         if terms.budget is None or plan.seconds + terms.seconds([*found, setting]) <= terms.budget:
@@ -210,7 +214,7 @@ def _written(case: Case, plan: Plan, rans: list[Ran], out: Path) -> Study:
     """Compare, and write what is to be read."""
     left = [Ran(setting=setting, status="left out", message="does not fit into --budget") for setting in plan.left_out]
     rans = rans + left
-    found = references(rans, case.quantities)
+    found = references(rans, case.quantities, chance=bool(case.seeds))
     judged = judge_all(rans, found, chance=bool(case.seeds))
     units = {quantity.name: unit_shown(quantity) for quantity in case.quantities}
     pictures = {name: out / f"pareto_{name}.png" for name in judged}

@@ -66,9 +66,7 @@ def _row(item: Judged, reference: Reference, unit: str, on_front: bool) -> dict[
 HEADER = ("quantity", "setting", "value", "error", "", "wall s", "front")
 
 
-def rows(
-    rans: Sequence[Ran], judged: Mapping[str, Sequence[Judged]], units: Mapping[str, str]
-) -> list[tuple[str, ...]]:
+def rows(judged: Mapping[str, Sequence[Judged]], units: Mapping[str, str]) -> list[tuple[str, ...]]:
     """Rows for a terminal, each quantity from fast to slow; a star marks the front."""
     found = []
     for name, items in judged.items():
@@ -79,7 +77,12 @@ def rows(
             star = "*" if item in front else ""
             first = (f"{name} [{units[name]}]", item.setting.name, _value(item))
             found.append((*first, error, verdict, f"{item.ran.wall_seconds:.3g}", star))
-    return found + [("-", ran.setting.name, ran.status, "", ran.message, "", "") for ran in rans if not ran.done]
+    return found
+
+
+def without_result(rans: Sequence[Ran]) -> list[str]:
+    """A line for each setting that was refused, failed, stopped or left out."""
+    return [f"{ran.setting.name}: {ran.status}: {ran.message}" for ran in rans if not ran.done]
 
 
 def _value(item: Judged) -> str:

@@ -78,10 +78,8 @@ def body(scene: Scene, value: Value) -> Changes:
 
 def rolling(scene: Scene, value: Value) -> Changes:
     """Rolling resistance left out, or of another kind."""
-    if value != "off":
-        return (f"contact.rolling={value}",)
     changes = []
     for path, table in scene.contact.tables():
         given = [name for name in table.numbers() if name.startswith("rolling")]
-        changes += [f"{path}.{name}=absent" for name in given]
-    return (*changes, "contact.rolling=absent")
+        changes += [f"{path}.{name}=absent" for name in given if value == "off" or name != "rolling_friction"]
+    return (*changes, "contact.rolling=absent" if value == "off" else f"contact.rolling={value}")

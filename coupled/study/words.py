@@ -15,6 +15,7 @@ from coupled.study.setting import Ran
 from coupled.study.table import percent
 
 LOADED = 0.1  # of the wall time that the processor did not work: told
+OPEN = ("not resolved", "one sample")
 SHORT = 0.5  # seconds of a run below which its time is mostly noise
 
 
@@ -64,6 +65,8 @@ def _of_reference(reference: Reference, unit: str) -> str:
     sentence = f'Measured against the setting "{reference.source}": {reference.mean:.6g} {unit}.'
     if math.isnan(reference.error):
         return f"{sentence} How far that is off itself is not known: there is no coarser level beside it."
+    if reference.open:
+        return f"{sentence} The level before it cannot be told apart from it by these seeds."
     order = f", from levels that differ with order {reference.order:.1f}" if reference.order is not None else ""
     return f"{sentence} Its own error is about {percent(reference.relative_error).lstrip('+')}{order}."
 
@@ -107,6 +110,8 @@ def _knobs(knobs: Sequence[Knob], items: Sequence[Judged]) -> list[str]:
 
 
 def _knob_line(knob: Knob, coarse: Judged, fine: Judged, seconds: float) -> str:
+    if coarse.verdict in OPEN:
+        return f"`{knob.name}` ({knob.meaning}): nothing resolved; fastest is {_at(coarse)}"
     if math.isinf(seconds):
         return f"`{knob.name}` ({knob.meaning}): buys no accuracy here; fastest is {_at(coarse)}"
     return (
@@ -121,7 +126,7 @@ def _at(item: Judged) -> str:
 
 
 def _order(knob: Knob, items: Sequence[Judged]) -> str:
-    if not knob.falls or any(item.verdict in ("not resolved", "one sample") for item in items):
+    if not knob.falls or any(item.verdict in OPEN for item in items):
         return ""
     pairs = [(float(item.setting.knobs[0][1]) if item.setting.role == "knob" else 1.0, item.value) for item in items]
     order = observed_order(pairs)
@@ -131,7 +136,8 @@ def _order(knob: Knob, items: Sequence[Judged]) -> str:
 def _dominated(items: Sequence[Judged]) -> list[str]:
     lines = []
     for item in items:
-        better = beaten_by(item, items) if item.verdict != "reference" else None
+        told = item.verdict in ("resolved", "below the reference's own error")
+        better = beaten_by(item, items) if told else None
         if better is not None:
             lines.append(f'- "{item.setting.name}" by "{better.setting.name}"')
     return ["Dominated, another setting is faster and not less accurate:", "", *lines, ""] if lines else []
@@ -140,10 +146,14 @@ def _dominated(items: Sequence[Judged]) -> list[str]:
 def _open(items: Sequence[Judged]) -> list[str]:
     lines = []
     for verdict in ("not resolved", "below the reference's own error", "one sample"):
-        names = [f'"{item.setting.name}"' for item in items if item.verdict == verdict]
+        names = [f'"{item.setting.name}"' for item in sorted(items, key=_wall) if item.verdict == verdict]
         if names:
-            lines.append(f"- {verdict}: {', '.join(names)}")
+            lines.append(f"- {verdict}, from fast to slow: {', '.join(names)}")
     return ["Not told apart from the reference:", "", *lines, ""] if lines else []
+
+
+def _wall(item: Judged) -> float:
+    return item.ran.wall_seconds
 
 
 def _speed_only(told: Told) -> list[str]:
@@ -172,8 +182,8 @@ def _load(told: Told) -> list[str]:
     if idle:
         lines.append(
             f"- Wall and processor time of {len(idle)} of {len(done)} settings differ by more than "
-            f"{100 * LOADED:.0f} %: the machine was at work for others too, or waited for its disk. Take their times with care; `cpu_s` in "
-            "study.csv is the other one."
+            f"{100 * LOADED:.0f} %: the machine was at work for others too, or waited for its disk. Take their times "
+            "with care; `cpu_s` in study.csv is the other one."
         )
     short = sum(ran.wall_seconds < SHORT for ran in done)
     if short:

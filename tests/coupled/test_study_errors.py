@@ -10,9 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from study_cases import QUANTITY, exactly, ran
 
+from coupled.errors import LeitoError
+from coupled.scene.quantities import ColumnOverTime
 from coupled.study.errors import judge, observed_order
 from coupled.study.front import beaten_by, front_of, pareto, price
+from coupled.study.judge import references
 from coupled.study.reference import Reference, own_error, scale_of
+from coupled.study.setting import Ran, Setting
 
 NUMBER = st.integers(min_value=0, max_value=8).map(float)  # few values, so that many points are equal
 
@@ -124,3 +128,54 @@ def test_scale_of_a_quantity_that_is_nearly_nothing():
     assert scale_of(-2.0, [1.0, 5.0]) == 2.0
     assert scale_of(1e-12, [1.0, -5.0]) == 5.0
     assert scale_of(0.0, [0.0]) == 1.0
+
+
+def quantity(**more):
+    return ColumnOverTime(name=QUANTITY, kind="drop", column="centroid_y", **more)
+
+
+def levels(*values, knob=("mesh", "level 2")):
+    """The base and two levels of refinement, each of some samples."""
+    roles = ("base", "finer", "reference")
+    return [
+        ran(role, 1.0, samples, role=role, knob=None if role == "base" else knob)
+        for role, samples in zip(roles, values, strict=True)
+    ]
+
+
+def test_a_closed_form_that_the_levels_go_past_has_an_error_of_its_own():
+    """Order 2 towards 1.0, beside a theory that says 1.1."""
+    runs = levels([1.16], [1.04], [1.01])
+    found = references(runs, [quantity(exact=1.1)], chance=False)[QUANTITY]
+    assert found.mean == 1.1 and found.error == pytest.approx(0.09 - 0.01)
+    assert judge(runs[1], QUANTITY, found, chance=False).verdict == "below the reference's own error"
+    agreeing = references(runs, [quantity(exact=1.0)], chance=False)[QUANTITY]
+    assert agreeing.error == 0.0
+
+
+def test_a_given_reference_does_not_know_its_error():
+    runs = levels([1.16], [1.04], [1.01])
+    given = ran("finest", 1.0, [1.01], role="reference")
+    assert math.isnan(references([runs[0], given], [quantity()], chance=False)[QUANTITY].error)
+    assert references(runs, [quantity()], chance=False)[QUANTITY].error == pytest.approx(0.01)
+
+
+def test_levels_that_chance_hides_are_no_error():
+    runs = levels([1.0, 1.4, 0.7], [1.2, 0.9, 1.1], [0.9, 1.2, 1.0])
+    found = references(runs, [quantity()], chance=True)[QUANTITY]
+    assert found.open and found.error == 0.0
+    apart = references(levels([2.0, 2.1, 2.2], [1.5, 1.6, 1.71], [1.25, 1.35, 1.45]), [quantity()], chance=True)
+    assert not apart[QUANTITY].open and apart[QUANTITY].error > 0.2
+
+
+def test_errors_are_over_the_scale_that_a_quantity_names():
+    found = references(levels([3.0], [3.0], [2.0]), [quantity(scale=4.0)], chance=False)[QUANTITY]
+    assert judge(ran("a", 1.0, [3.0]), QUANTITY, found, chance=False).error == pytest.approx(0.25)
+
+
+def test_without_a_finest_level_there_is_nothing_to_measure_against():
+    runs = levels([1.0], [1.0], [1.0])[:1]
+    refused = Ran(setting=Setting(name="finest", role="reference"), status="refused", message="r = 3 is above 2")
+    with pytest.raises(LeitoError, match="did not come to its end: r = 3 is above 2; give another one"):
+        references([*runs, refused], [quantity()], chance=False)
+    assert references([*runs, refused], [quantity(exact=1.0)], chance=False)[QUANTITY].error == 0.0

@@ -14,7 +14,7 @@ from coupled.study.knobs import BY_NAME
 from coupled.study.labels import Label, write_labels
 from coupled.study.picture import draw_front
 from coupled.study.setting import Ran, Setting
-from coupled.study.table import percent, rows, write_csv
+from coupled.study.table import percent, rows, without_result, write_csv
 from coupled.study.words import Told, text_of
 
 RIGHT = exactly(1.0)
@@ -65,9 +65,10 @@ def test_csv_has_a_row_per_setting_and_reads_back_with_all_digits(settings, judg
 
 
 def test_terminal_goes_from_fast_to_slow_and_stars_the_front(settings, judged):
-    table = rows(settings, judged, UNITS)
-    assert [row[1] for row in table] == ["step = 4", "step = 2", "as it is", "step = 0.5", "mesh = 2", "step = 9"]
-    assert [row[-1] for row in table] == ["*"] * 4 + ["", ""]
+    table = rows(judged, UNITS)
+    assert [row[1] for row in table] == ["step = 4", "step = 2", "as it is", "step = 0.5", "mesh = 2"]
+    assert [row[-1] for row in table] == ["*"] * 4 + [""]
+    assert without_result(settings) == ["step = 9: refused: time.step = 9 is above the stability limit, choose less"]
 
 
 def test_text_says_order_price_and_what_is_dominated(settings, judged, tmp_path):

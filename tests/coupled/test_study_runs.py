@@ -120,7 +120,7 @@ def test_chance_is_told_from_error_and_threads_change_nothing(tmp_path):
     assert by_name["step = 0.5"].ran.values != base.values
     assert rows["step = 0.5"]["verdict"] == "not resolved"
     assert float(rows["step = 0.5"]["half_width"]) > 0.0
-    assert "not resolved: " in (tmp_path / "study" / "study.md").read_text()
+    assert "not resolved, from fast to slow: " in (tmp_path / "study" / "study.md").read_text()
 
 
 def test_a_killed_study_goes_on_where_it_was(tmp_path):
