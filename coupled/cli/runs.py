@@ -53,12 +53,17 @@ def _default_folder(scene: str, folder: str | None) -> Path:
     return Path(folder) if folder is not None else Path("runs") / Path(scene).stem
 
 
-def check(scene: SceneArgument, overrides: SetOption = None, petsc: PetscOption = None) -> None:
-    """Validate a scene and say what a run would cost."""
+def check(
+    scene: SceneArgument,
+    overrides: SetOption = None,
+    petsc: PetscOption = None,
+    measure: Annotated[bool, typer.Option("--measure", help="Take features out one by one and compare times.")] = False,
+) -> None:
+    """Validate a scene, say what it models, also without need, and what a run would cost."""
     from coupled.scene import load_scene
 
     loaded = load_scene(scene, overrides or ())
     set_petsc(petsc)
     from coupled.report.check import check_scene
 
-    print_table(("", "quantity", "value"), check_scene(loaded))
+    print_table(("", "quantity", "value"), check_scene(loaded, measure=measure))

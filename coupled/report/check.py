@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import time
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +15,10 @@ from coupled.loads import load_rows
 from coupled.output.folder import SUMMARY
 from coupled.report import cautions
 from coupled.report.contact import contact_rows
+from coupled.report.need_rows import need_rows
+from coupled.report.needs import without_need
+from coupled.report.paired import measured_shares
+from coupled.report.shares import Trial
 from coupled.scene import Scene, SettledGrains, Time
 from coupled.step import StepLimits, limits_of, with_step
 from particles.timestep import SOURCE_FACTOR
@@ -27,53 +30,34 @@ BYTES_PER_CONTACT = 60  # slot, history and dashpots of one listed pair
 LISTED_PAIRS = 2.5  # per grain, measured in settled beds
 
 
-def check_scene(scene: Scene) -> list[Row]:
-    """Build a scene, try a few steps, and tell what it is made of.
+def check_scene(scene: Scene, *, measure: bool = False) -> list[Row]:
+    """Build a scene, try a few steps, and tell what it is made of and what each part costs.
 
     A scene that names a bed is tried on that bed if a run has settled it in `runs` already. If not,
-    its grains stand on the lattice: counts and limits are the same, the time is estimated.
+    its grains stand on the lattice: counts and limits are the same, the time is estimated. `measure` also takes the
+    features out of it one by one and compares times.
 
     Returns
     -------
     Rows (section, quantity, value).
     """
-    asked, scene = scene.time, with_step(scene)
+    asked, scene = scene, with_step(scene)
     settled = _settled_bed(scene)
     threads = max(1, (os.cpu_count() or 1) // MPI.COMM_WORLD.size)
     tried = scene if settled is not None else on_lattice(scene)
     built = build(tried, bed=settled, threads=threads)
-    rows = [("scene", "title", scene.title), ("scene", "models", ", ".join(models(scene)))]
-    rows += _grain_rows(built)
+    needless = without_need(asked, built)  # before the trial moves anything
+    rows = [("scene", "title", scene.title), *_grain_rows(built)]
     limits = limits_of(built.model)
     if limits is not None:
-        rows += _step_rows(limits, asked)
+        rows += _step_rows(limits, asked.time)
     notes = cautions.before(built, limits)
     rows += _structure_rows(scene, built)
-    rows += _cost_rows(scene, built, SETTLED_OVER_LOOSE if settled is None else 1.0)
+    trial = _try_out(built, SETTLED_OVER_LOOSE if settled is None else 1.0)
+    rows += _cost_rows(scene, built, trial)
+    measured = measured_shares(tried, settled) if measure else {}
+    rows += need_rows(scene, needless, trial, measured)
     return rows + [("note", "", sentence) for sentence in notes]
-
-
-def models(scene: Scene) -> list[str]:
-    """The features that a scene names; whatever it does not name is not computed."""
-    named = {
-        "free grains": scene.grains is not None,
-        "friction": scene.contact is not None and scene.contact.rubs,
-        "rolling resistance": scene.contact is not None and scene.contact.rolls,
-        "global damping": scene.damping is not None,
-        "walls": scene.box is not None and bool(scene.box.walls),
-        "rows of fixed grains": bool(scene.rows),
-        "gravity": any(scene.gravity),
-        f"{scene.structure.kind} structure" if scene.structure else "": scene.structure is not None,
-        f"{_theory(scene)} theory": _theory(scene) is not None,
-        f"{scene.interface.kind} interface" if scene.interface else "": scene.interface is not None,
-    }
-    return [name for name, wanted in named.items() if wanted]
-
-
-def _theory(scene: Scene) -> str | None:
-    return (
-        None if scene.structure is None or scene.structure.theory is None else scene.structure.theory.replace("_", "-")
-    )
 
 
 def on_lattice(scene: Scene) -> Scene:
@@ -141,16 +125,22 @@ def _structure_rows(scene: Scene, built: Built) -> list[Row]:
     return rows
 
 
-def _cost_rows(scene: Scene, built: Built, factor: float) -> list[Row]:
+def _try_out(built: Built, factor: float) -> Trial:
+    """Time some steps; `factor` is how much longer settled grains take than those that are tried."""
     model = built.model
     model.advance(1)  # loads the compiled code
-    many = model.particles is not None and model.particles.grains.n_free > 1000
-    steps = MPI.COMM_WORLD.bcast(TRIED if many else 10 * TRIED, root=0)
-    started = time.perf_counter()
+    n_free = 0 if model.particles is None else model.particles.grains.n_free
+    steps, n_free = MPI.COMM_WORLD.bcast((TRIED if n_free > 1000 else 10 * TRIED, n_free), root=0)
+    before = dict(model.seconds)
     model.advance(steps)
-    per_step = (time.perf_counter() - started) / steps
-    if model.particles is not None and model.particles.grains.n_free:
-        per_step *= factor
+    spent = {name: (seconds - before[name]) / steps for name, seconds in model.seconds.items()}
+    if n_free:
+        spent["grains"] *= factor
+    return Trial(whole=sum(spent.values()), n_free=n_free, **spent)
+
+
+def _cost_rows(scene: Scene, built: Built, trial: Trial) -> list[Row]:
+    model, per_step = built.model, trial.whole
     total = math.ceil(scene.time.duration / model.window)
     rows = [
         ("cost", "steps", f"{total}"),

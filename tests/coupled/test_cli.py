@@ -123,7 +123,7 @@ def test_run_writes_to_the_folder_of_the_scene(arguments, folder, leito, stand_i
 
 def test_check_prints_its_rows(leito, stand_in):
     rows = [("time", "step", "4e-05 s"), ("coupling", "r", "0.3")]
-    stand_in("report.check", "check_scene", lambda scene: rows)
+    stand_in("report.check", "check_scene", lambda scene, measure: rows)
     code, out, _ = leito("check", "elastic_tube")
     assert code == 0
     assert [line.split() for line in out.splitlines()[1:]] == [

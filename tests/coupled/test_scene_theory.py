@@ -8,7 +8,7 @@ import tomli_w
 from bad_scenes import TUBE, changed
 
 from coupled.build import build
-from coupled.report.check import models
+from coupled.report.modelled import models
 from coupled.errors import SceneError
 from coupled.running.run import run_scene
 from coupled.scene import Scene, dump_scene, load_scene
