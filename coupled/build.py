@@ -12,24 +12,19 @@ import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 
-import meshes
 import particles as dem
-import structure as fem
+from coupled.bodies import body_of, interface_of, mesh_of, stable_ratio
 from coupled.errors import LeitoError
 from coupled.exchange.iterated import Iteration
-from coupled.exchange.limit import ITERATED, exchange_limit
 from coupled.interface.closed_ratio import ClosedRatio
 from coupled.interface.door import Interface, stiffness_ratio
-from coupled.interface.facets import FacetInterface
 from coupled.interface.glued import BODY, GluedGrains
-from coupled.laws import contact_law, interface_spring
+from coupled.laws import contact_law, damping_of, interface_spring
 from coupled.layout import box_walls, laid_out, shaking_of
-from coupled.loads import loads_of
 from coupled.model import Model
-from coupled.scene import Beam, RowUnder, Scene, SettledGrains
+from coupled.scene import RowUnder, Scene, SettledGrains
 from coupled.scene.materials import GRAINS, STRUCTURE, materials
-from coupled.scene.structure import Structure as StructureTable
-from coupled.step import damping_of, with_step
+from coupled.step import with_step
 from particles.timestep import require_stable
 
 WARNED_SHARE = 0.95  # of the stable ratio
@@ -72,10 +67,10 @@ def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI
     body, interface = None, None
     if scene.structure is not None:
         centroid = _placement(scene, free, comm)
-        mesh = _mesh(scene, comm, centroid)
-        body = _structure(scene, mesh, centroid)
+        mesh = mesh_of(scene, comm, centroid)
+        body = body_of(scene, mesh, centroid)
         if scene.interface is not None:
-            interface = _interface(scene, mesh)
+            interface = interface_of(scene, mesh)
     system = None
     if comm.rank == 0 and (free is not None or scene.rows):
         system = _particles(scene, free, interface, contact, bed, threads)
@@ -107,24 +102,6 @@ def _free_grains(scene: Scene, bed: Saved | None) -> dem.Grains | None:
     return laid_out(scene)
 
 
-def _mesh(scene: Scene, comm: MPI.Intracomm, centroid: tuple[float, float]) -> meshes.StructureMesh:
-    shape = scene.structure.shape
-    options = {"cell": shape.cell, "order": shape.order, "comm": comm}
-    if isinstance(shape, Beam):
-        corner = (centroid[0] - shape.length / 2, centroid[1] - shape.height / 2)
-        return meshes.beam(
-            length=shape.length, height=shape.height, along=shape.along, across=shape.across, origin=corner, **options
-        )
-    return meshes.tube(
-        outer_radius=shape.outer_radius,
-        inner_radius=shape.inner_radius,
-        around=shape.around,
-        layers=shape.layers,
-        centre=centroid,
-        **options,
-    )
-
-
 def _placement(scene: Scene, free: dem.Grains | None, comm: MPI.Intracomm) -> tuple[float, float]:
     """Centroid of the structure; `on_bed`: lowered until its interface touches."""
     place, shape = scene.structure.placement, scene.structure.shape
@@ -134,68 +111,9 @@ def _placement(scene: Scene, free: dem.Grains | None, comm: MPI.Intracomm) -> tu
     if comm.rank == 0:
         top = float(np.max(free.y[: free.n_free] + free.radius[: free.n_free])) if free is not None else 0.0
         above = (place.x, top + 2.0 * shape.half_extent[1])
-        fall = _interface(scene, _mesh(scene, MPI.COMM_SELF, above)).fall_onto(free)
+        fall = interface_of(scene, mesh_of(scene, MPI.COMM_SELF, above)).fall_onto(free)
         height = above[1] - fall + place.gap
     return (place.x, comm.bcast(height, root=0))
-
-
-def _interface(scene: Scene, mesh: meshes.StructureMesh) -> Interface:
-    table = scene.interface
-    if table.kind == "facets":
-        return FacetInterface(mesh.outer_polyline, boundaries=table.boundaries, closest=_smallest_diameter(scene))
-    return GluedGrains(
-        mesh.outer_polyline,
-        per_facet=table.grains_per_facet(scene.structure.shape),
-        boundaries=table.boundaries,
-        diameter=table.diameter,
-        mean_velocity=table.velocity == "mean",
-        couple=table.couple,
-    )
-
-
-def _smallest_diameter(scene: Scene) -> float | None:
-    """Of the grains that may meet the structure [m]; None without any."""
-    radii = [row.radius for row in scene.rows]
-    if scene.first_grains is not None:
-        radii.append(scene.first_grains.smallest_radius)
-    radii += [intruder.radius for intruder in scene.intruders]
-    return 2.0 * min(radii) if radii else None
-
-
-def _structure(scene: Scene, mesh: meshes.StructureMesh, centroid: tuple[float, float]) -> fem.Structure:
-    table = scene.structure
-    step = scene.time.step * (1 if scene.interface is None else scene.interface.substeps)
-    if table.kind == "rigid":
-        return fem.PrescribedRigid(mesh, path=np.array(table.path.points), time_step=step)
-    loads = loads_of(table.loads, mesh, centroid)
-    if table.kind == "free_rigid":
-        return fem.FreeRigid(mesh, density=table.density, time_step=step, loads=loads)
-    body = fem.ElasticStructure(
-        mesh,
-        material=fem.PlaneStrain(
-            youngs_modulus=table.youngs_modulus, poissons_ratio=table.poissons_ratio, density=table.density
-        ),
-        time_step=step,
-        damping=None
-        if table.rayleigh is None
-        else fem.Rayleigh(mass_factor=table.rayleigh.mass_factor, stiffness_factor=table.rayleigh.stiffness_factor),
-        scheme=_scheme(table),
-        loads=loads,
-        element=table.element,
-        theory=table.theory,
-    )
-    body.require_resolved()
-    if table.initial is not None:
-        body.release_from_mode(table.initial.mode, table.initial.amplitude)
-    return body
-
-
-def _scheme(table: StructureTable) -> fem.Scheme:
-    if table.generalised_alpha is not None:
-        return fem.GeneralizedAlpha(spectral_radius=table.generalised_alpha.spectral_radius)
-    if table.hht is not None:
-        return fem.HilberHughesTaylor(alpha=table.hht.alpha)
-    return fem.Newmark(beta=table.newmark.beta, gamma=table.newmark.gamma)
 
 
 def _particles(
@@ -247,14 +165,6 @@ def _row_places(scene: Scene, row: Any, interface: Interface | None) -> NDArray[
     own = GluedGrains(interface.polyline, per_facet=per_facet, boundaries=(row.under,))
     standoff = interface.radius if math.isfinite(interface.radius) else 0.0
     return own.reference - np.array([0.0, standoff + row.radius])
-
-
-def stable_ratio(scene: Scene) -> float:
-    """The stiffness ratio up to which the exchange of a scene is stable on fixed partners."""
-    if scene.interface.exchange == "iterated":
-        return ITERATED
-    scheme = _scheme(scene.structure) if scene.structure.kind == "elastic" else fem.Newmark()
-    return exchange_limit(scheme, scene.interface.substeps)
 
 
 def _iteration(scene: Scene) -> Iteration | None:

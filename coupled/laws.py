@@ -57,6 +57,14 @@ def contact_law(scene: Scene) -> dem.Contact:
     return dem.ContactTable([[models.get(frozenset([a, b]), usual) for b in names] for a in names])
 
 
+def damping_of(scene: Scene) -> dem.GlobalDamping | None:
+    """The global damping of a scene."""
+    given = scene.damping
+    if given is None:
+        return None
+    return dem.GlobalDamping(translational=given.translational, rotational=given.rotational)
+
+
 def choose(scene: Scene) -> Choice:
     """Numbers of the recipe, for the smallest grain (model 1.3).
 

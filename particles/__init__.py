@@ -19,6 +19,7 @@ from particles.errors import ParticleError
 from particles.facets import Facets
 from particles.network import StiffnessNetwork, stiffness_network
 from particles.shaking import Shaking
+from particles.sample import sample_limit
 from particles.snapshot import Snapshot
 from particles.stability import StepLimit, sharp_limit
 from particles.state import Grains
@@ -52,6 +53,7 @@ __all__ = [
     "continued",
     "lattice",
     "packing_limit",
+    "sample_limit",
     "sharp_limit",
     "source_bound",
     "stiffness_network",

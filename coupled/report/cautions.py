@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from coupled.build import WARNED_SHARE, Built, stable_ratio
+from coupled.bodies import stable_ratio
+from coupled.build import WARNED_SHARE, Built
 from coupled.laws import interface_spring
 from coupled.loads import unresolved_schedules
 from coupled.scene import Scene

@@ -10,7 +10,8 @@ from typing import Any
 from mpi4py import MPI
 
 from coupled import bed as beds
-from coupled.build import Built, build, stable_ratio
+from coupled.bodies import stable_ratio
+from coupled.build import Built, build
 from coupled.loads import load_rows
 from coupled.output.folder import SUMMARY
 from coupled.report import cautions
@@ -85,7 +86,11 @@ def _grain_rows(built: Built) -> list[Row]:
 
 def _step_rows(limits: StepLimits, asked: Time) -> list[Row]:
     """The step in use, and its share of the source's bound and of the limits of any packing and of this one."""
-    by = f" (auto: {asked.safety:g} of the limit of any packing)" if asked.step == "auto" else ""
+    by = ""
+    if asked.step == "auto":
+        by = f" (auto: {asked.safety:g} of the limit of any packing)"
+        if asked.step_fraction is not None:
+            by = f" (auto: {asked.step_fraction:g} of the limit of a settled sample, or of the coupling)"
     network = limits.network
     present = "no contacts yet"
     if network.contacts:

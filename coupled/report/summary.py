@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coupled.build import Built, stable_ratio
+from coupled.bodies import stable_ratio
+from coupled.build import Built
 from coupled.report.contact import contact_numbers
 from coupled.report.quantities import quantity_lines
 from coupled.running.observe import Observation

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from coupled.build import Built, stable_ratio
+from coupled.bodies import stable_ratio
+from coupled.build import Built
 from coupled.running.watchdog import Sign
 from coupled.step import StepLimits, limits_of
 

@@ -96,6 +96,11 @@ class Contact(ContactNumbers):
         None, description="rolling resistance: a moment spring with a limit, or the limit alone"
     )
     recipe: Recipe | None = Field(None, description="physical wishes instead of coefficients")
+    stiffness_factor: Positive | None = Field(
+        None,
+        description="factor on all springs, those of pairs and of the bed too [-]; dashpots follow, so that "
+        "restitution stays",
+    )
     pairs: tuple[Pair, ...] = Field((), description="numbers that differ between two materials")
     materials: dict[str, Elasticity] | None = Field(
         None, description="elastic constants by material, mixed for each pair (Hertz)"

@@ -14,6 +14,11 @@ Wall = Literal["left", "right", "floor", "lid"]
 Axis = Literal["x", "y"]
 USUAL_WALLS: tuple[Wall, ...] = ("left", "right", "floor")
 ACROSS: dict[Axis, tuple[Wall, ...]] = {"x": ("left", "right"), "y": ("floor", "lid")}
+COARSENING = Field(
+    None,
+    description="factor on all radii [-], with so many fewer grains that a bed fills its box as before; dashpots, the "
+    "grains of the bed and glued grains follow",
+)
 
 
 class Box(Table):
@@ -68,6 +73,7 @@ class Grains(Table):
     spacing: Annotated[Number, Field(ge=1)] = Field(1.05, description="lattice spacing over the largest diameter [-]")
     jitter: Fraction = Field(0.0, description="random shift as a fraction of the free gap [-]")
     layout: Literal["lattice", "list"] = Field("lattice", description="how grains start")
+    coarsening: Positive | None = COARSENING
     positions: tuple[Annotated[tuple[Number, ...], Field(min_length=2, max_length=5)], ...] = Field(
         (), description="rows [x, y, vx, vy, omega] in m, m/s and rad/s, in the order of sizes"
     )
@@ -108,6 +114,7 @@ class SettledGrains(Table):
     beside: ClassVar[str] = " together with bed"
 
     bed: Annotated[str, Field(min_length=1)] = Field(description="name or path of the scene that settles the grains")
+    coarsening: Positive | None = COARSENING
 
 
 def _layout_of(data: Any) -> str:

@@ -13,6 +13,7 @@ from pydantic import BaseModel, ValidationError
 from coupled.errors import SceneError
 from coupled.scene.columns import read_schedules
 from coupled.scene.find import find_scene
+from coupled.scene.knobs import plain
 from coupled.scene.overrides import apply_override, parse_override
 from coupled.scene.refusal import translate
 from coupled.scene.scene import Scene
@@ -61,7 +62,9 @@ def _load(path: Path, overrides: list[Override], above: tuple[Path, ...]) -> Sce
         for keys, value in own:
             apply_override(data, keys, value)
         read_schedules(data, path.parent)
-        return Scene.model_validate(data)
+        scene = Scene.model_validate(data)
+        plain(scene)  # refuses factors that make no scene
+        return scene
     except ValidationError as error:
         raise _named(path, translate(error, DESCRIPTIONS)) from None
     except SceneError as error:

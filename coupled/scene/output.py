@@ -33,6 +33,12 @@ class Time(Table):
     integrator: Literal["leapfrog", "velocity_verlet"] = Field(
         "leapfrog", description="scheme of the grains; velocity_verlet shows dashpots the velocity of the present"
     )
+    step_fraction: Annotated[Number, Field(gt=0, le=1)] | None = Field(
+        None,
+        description='share of the sharp limit for step = "auto" [-], instead of safety: the limit of a settled sample '
+        "of the grains, or that of the coupling if it is smaller",
+    )
+    refinement: Positive | None = Field(None, description="number by which a given step is divided [-]")
     stop_at_rest: Positive | None = Field(
         None,
         description="stop when the mean kinetic energy per grain over the mean m |g| d falls below this [-]",
@@ -42,7 +48,7 @@ class Time(Table):
     @classmethod
     def _write_safety(cls, data: Any) -> Any:
         """Write the safety factor of a step that is left to the model."""
-        if isinstance(data, dict) and data.get("step") == "auto":
+        if isinstance(data, dict) and data.get("step") == "auto" and data.get("step_fraction") is None:
             return {"safety": SAFETY, **data}
         return data
 

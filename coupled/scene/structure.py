@@ -79,6 +79,9 @@ class Structure(Table):
     )
     tube: Tube | None = Field(None, description="a ring")
     beam: Beam | None = Field(None, description="a rectangle")
+    refinement: Positive | None = Field(
+        None, description="factor on the numbers of cells of the shape [-]; as many glued grains as before share them"
+    )
     placement: Placement = Field(default_factory=Placement, description="start of the centroid")
     rayleigh: Rayleigh | None = Field(None, description="damping of the material")
     newmark: Newmark | None = Field(None, description="time integration by Newmark, the default")

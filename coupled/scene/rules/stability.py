@@ -48,3 +48,15 @@ def _check_auto(scene: Scene) -> None:
         raise refusal("time.step", "auto", "needs free grains, whose contacts set the limit; give a number in s")
     if time.step != "auto" and time.safety is not None:
         raise refusal("time.safety", time.safety, 'belongs to time.step = "auto"; remove it, or let the step be that')
+    if time.step_fraction is not None and time.step != "auto":
+        raise refusal(
+            "time.step_fraction",
+            time.step_fraction,
+            'belongs to time.step = "auto"; remove it, or let the step be that; time.refinement divides a given step',
+        )
+    if time.step_fraction is not None and time.safety is not None:
+        raise refusal("time.safety", time.safety, "is given together with time.step_fraction; keep one")
+    if time.refinement is not None and time.step == "auto":
+        raise refusal(
+            "time.refinement", time.refinement, 'divides a given step; with step = "auto" give time.step_fraction'
+        )
