@@ -237,9 +237,9 @@ def _chain(facets: Whole) -> dict[str, Whole]:
 
 
 def _grid(low: Floats, high: Floats) -> Grid:
-    """Cells over all boxes, some for each feature, at least as large as most boxes are."""
+    """Cells over all boxes, some for each feature, at least as large as most boxes are; few however far they reach."""
     x_min, y_min = low.min(axis=0)
     width, height = high.max(axis=0) - (x_min, y_min)
-    smallest = float((high - low).min())
-    size = max(smallest, float(np.sqrt(width * height / (CELLS_PER_FEATURE * len(low)))))
+    most = CELLS_PER_FEATURE * len(low)
+    size = max(float((high - low).min()), np.sqrt(width / most) * np.sqrt(height), max(width, height) / most)
     return Grid(float(x_min), float(y_min), size, int(width / size) + 1, int(height / size) + 1)

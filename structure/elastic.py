@@ -17,6 +17,7 @@ from structure.errors import StepError, StructureError
 from structure.loads.load import Load
 from structure.loads.vectors import LoadVectors
 from structure.material import PlaneStrain, Rayleigh
+from structure.overturned import first_overturned
 from structure.results import StructureEnergies, StructureFields, StructurePeaks, cell_kind
 from structure.rewinding import Rewinding, Snapshot
 from structure.schemes import Newmark, Scheme
@@ -241,6 +242,11 @@ class ElasticStructure(Rewinding):
     def peaks(self) -> StructurePeaks:
         """Largest von Mises stress and principal strain over the Gauss points of all cells."""
         return self._theory.peaks()
+
+    def overturned_cell(self) -> int | None:
+        """See `Structure`."""
+        places = self.mesh.points + self._body.nodes.gather(self._stepper.displacement)
+        return first_overturned(places, self.mesh.cells, self.mesh.cell)
 
     def fields(self) -> StructureFields:
         """Nodal fields in original order, on every rank."""

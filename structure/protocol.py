@@ -91,6 +91,10 @@ class Structure(Protocol):
         """Largest stress and strain."""
         ...
 
+    def overturned_cell(self) -> int | None:
+        """Number of a cell that deformation has turned inside out, None without any. Collective."""
+        ...
+
     def fields(self) -> StructureFields:
         """Nodal fields in original order, on every rank."""
         ...

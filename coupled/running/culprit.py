@@ -40,13 +40,18 @@ def touch_of(model: Model, place: int) -> str:
     )
 
 
+def name_of_node(model: Model, node: int) -> str:
+    """A boundary node of the structure by its number and place."""
+    body = model.structure
+    x, y = (body.polyline.points + body.boundary_displacement)[node]
+    return f"boundary node {node} at ({x:.4g}, {y:.4g}) m"
+
+
 def liveliest_node(model: Model) -> str:
     """The boundary node with the largest acceleration."""
-    body = model.structure
-    size = np.hypot(*body.boundary_acceleration.T)
+    size = np.hypot(*model.structure.boundary_acceleration.T)
     node = int(np.argmax(np.where(np.isfinite(size), size, np.inf)))
-    x, y = (body.polyline.points + body.boundary_displacement)[node]
-    return f"boundary node {node} at ({x:.4g}, {y:.4g}) m with an acceleration of {size[node]:.3g} m/s2"
+    return f"{name_of_node(model, node)} with an acceleration of {size[node]:.3g} m/s2"
 
 
 def fastest_line(balance: Balance, since: Balance) -> str:

@@ -11,7 +11,8 @@ from coupled.errors import ExchangeError, LeitoError
 from coupled.model import Model, Snapshot
 from coupled.running import watchdog
 from coupled.running.ranks import on_root, together
-from coupled.running.watchdog import Glance, Remedy, Sign
+from coupled.running.sign import Remedy, Sign
+from coupled.running.watchdog import Glance
 from particles import ParticleError
 from structure import StructureError
 

@@ -33,7 +33,7 @@ from coupled.running.ranks import LeaveTogether, on_root, root_alone, together
 from coupled.running.record import Record
 from coupled.running.remedy import remedy
 from coupled.running.schedule import Events, Every
-from coupled.running.watchdog import Glance, Unstable
+from coupled.running.watchdog import Glance, Unstable, overturned_cell
 from coupled.scene import Scene
 from coupled.step import with_step
 from particles.beds import rest_ratio
@@ -166,7 +166,7 @@ class Run:
         step, started = self.model.steps_done, time.perf_counter()
         if self.events.writes(step):
             seen = observe(self.model, self.record.start)
-            guard.check(Glance(seen.balance, seen.look))
+            guard.check(Glance(seen.balance, seen.look, overturned_cell(self.model)))
             self.record.count(seen)
             self._end_at_rest(seen)
             self._write_due(seen)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -12,18 +11,17 @@ from coupled.balance import Balance, take_balance
 from coupled.errors import LeitoError
 from coupled.model import Model
 from coupled.running import culprit
+from coupled.running.body_signs import body_sign
+from coupled.running.sign import FARTHEST_STEP, Sign
 from particles import ContactLook, sharp_limit
 from particles.spots import alternating
 
 DEEPEST_OVERLAP = 0.5  # of the smaller radius: the linear contact has lost its meaning
-FARTHEST_STEP = 0.5  # of its radius that a grain in contact may go in a step
 ENERGY_MADE = 0.25  # of the energy turned over
 OF_PRESENT = 0.01  # of kinetic and elastic energy, that energy made between two looks must exceed
 AT_INTERFACE = 0.05  # of the same, that the interface may make whatever else is turned over; in sound runs up to 1e-3
 NOISE = 1e-6  # of the energy stored: below it a relative error says nothing
 TURNING = 2e-3  # share of the free grains that turn about at every step; in sound beds up to 4e-4
-
-Remedy = Literal["step", "contact", "exchange", "structure"]
 
 
 class Unstable(LeitoError):
@@ -32,30 +30,29 @@ class Unstable(LeitoError):
 
 @dataclass(frozen=True)
 class Glance:
-    """What a watchdog looks at: the ledger and the contacts at one moment."""
+    """What a watchdog looks at: the ledger, the contacts and a cell that is inside out at one moment."""
 
     balance: Balance
     look: ContactLook | None
-
-
-@dataclass(frozen=True)
-class Sign:
-    """What is wrong, with its place and value, and what to change about it."""
-
-    what: str
-    remedy: Remedy
+    overturned: int | None
 
 
 def glance(model: Model, start: dict[str, float]) -> Glance:
     """Look at the model; `start` are the ledger's entries at the beginning. Collective under MPI."""
     look = model.particles.look() if model.particles is not None else None
-    return Glance(take_balance(model, look, start), look)
+    return Glance(take_balance(model, look, start), look, overturned_cell(model))
+
+
+def overturned_cell(model: Model) -> int | None:
+    """A cell of the structure that is inside out, if any. Collective under MPI."""
+    return None if model.structure is None else model.structure.overturned_cell()
 
 
 def first_sign(model: Model, seen: Glance, since: Glance) -> Sign | None:
     """What is wrong with a state, if anything; `since` is the last look that found nothing. On rank 0."""
     return (
         _not_finite(model, seen)
+        or body_sign(model, seen.overturned)
         or _too_deep(model, seen)
         or _too_fast(model, seen)
         or _energy_made(model, seen, since)

@@ -187,6 +187,9 @@ class FreeRigid(Rewinding):
         """Zero: a rigid body knows no stress."""
         return NO_STRESS
 
+    def overturned_cell(self) -> None:
+        """None: a rigid body does not deform."""
+
     def fields(self) -> StructureFields:
         """Displacement and velocity; stress and strain are zero."""
         return rigid_fields(self.mesh, self._reference_centroid, self._motion)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Literal
 
 from coupled.scene.refusal import Plain, missing, refusal
@@ -24,6 +25,7 @@ _ALLOWED: dict[_Kind, tuple[str, ...]] = {
     "rigid": ("path", "density"),
     "free_rigid": ("density", "loads"),
 }
+LARGEST_WAY = 0.5  # of the smallest grain's radius in a step, as the watchdogs have it
 _OPTIONAL = (*_ALLOWED["elastic"], "path")
 
 
@@ -41,6 +43,7 @@ def check_structure(scene: Scene) -> None:
     check_theory(structure)
     if structure.path is not None:
         _check_path(structure.path.points)
+        _check_speed(scene, structure.path.points)
     _check_placement(scene, structure)
 
 
@@ -107,6 +110,26 @@ def _check_path(points: tuple[tuple[float, float, float], ...]) -> None:
                 f"structure.path.points.{index}",
                 list(points[index]),
                 f"must be later than {points[index - 1][0]:g} s; let the times increase",
+            )
+
+
+def _check_speed(scene: Scene, points: tuple[tuple[float, float, float], ...]) -> None:
+    """Check that a prescribed path passes over no grain within a step; a step that is left open is checked later."""
+    step, grains = scene.time.step, scene.first_grains
+    if grains is None or scene.interface is None or isinstance(step, str):
+        return
+    largest, substeps = LARGEST_WAY * grains.smallest_radius, scene.interface.substeps
+    for index in range(1, len(points)):
+        time, *place = points[index]
+        before, *start = points[index - 1]
+        length = math.dist(place, start)
+        way = min(length / substeps, length * step / (time - before))
+        if way > largest:
+            raise refusal(
+                f"structure.path.points.{index}",
+                list(points[index]),
+                f"moves the structure by {way:.3g} m in a time step, more than {LARGEST_WAY:g} of the smallest grain's "
+                f"radius, so that grains would be passed over; give this way at least {length * step / largest:.3g} s",
             )
 
 
