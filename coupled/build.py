@@ -182,7 +182,7 @@ def _closed_ratio(scene: Scene, model: Model, contact: dem.Contact | None) -> Cl
         return None
     grains = None if model.particles is None else model.particles.grains
     spring = partial(interface_spring, scene, contact, grains, interface.radius)
-    return ClosedRatio(interface, body, spring=spring, window=model.window)
+    return ClosedRatio(interface, body, spring=spring, window=model.window, limit=stable_ratio(scene))
 
 
 def _stiffness_ratio(scene: Scene, model: Model, contact: dem.Contact | None, comm: MPI.Intracomm) -> float:

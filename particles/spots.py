@@ -73,6 +73,18 @@ def alternating(system: ParticleSystem, least: float = 0.5) -> np.ndarray:
     return np.nonzero(np.sum(before * after, axis=1) < -least * larger)[0]
 
 
+def touching_bodies(system: ParticleSystem) -> np.ndarray:
+    """Places of the free grains that touch a prescribed grain or a facet."""
+    n_free, pairs = system.grains.n_free, system.list.pairs
+    near = np.nonzero((pairs.owner < n_free) & (pairs.partner >= n_free))[0]  # free grains come first
+    found = [
+        i for i, j in zip(pairs.owner[near], pairs.partner[near], strict=True) if _touch_of_pair(system, i, j).depth > 0
+    ]
+    if system.facets is not None:
+        found += system.facets.touching(system.grains)[:, 0].tolist()
+    return np.unique(np.array(found, np.int64))
+
+
 def _partners(system: ParticleSystem, grain: int) -> np.ndarray:
     pairs = system.list.pairs
     row = pairs.partner[pairs.start[grain] : pairs.start[grain + 1]]

@@ -32,6 +32,8 @@ class ClosedRatio:
         k [N/m] and c [N s/m] at an overlap [m]. Asked on rank 0.
     window : float
         H [s].
+    limit : float
+        Up to where the exchange is stable on fixed partners [-].
     """
 
     def __init__(
@@ -41,7 +43,9 @@ class ClosedRatio:
         *,
         spring: Callable[[float], tuple[float, float]],
         window: float,
+        limit: float,
     ) -> None:
+        self.limit = limit
         self._interface, self._structure = interface, structure
         self._spring, self._window = spring, window
 

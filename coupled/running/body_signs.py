@@ -29,8 +29,8 @@ def _inside_out(model: Model, cell: int | None) -> Sign | None:
     mesh = model.structure.mesh
     x, y = mesh.points[mesh.cells[cell]].mean(axis=0)
     return Sign(
-        f"cell {cell} of the structure, at ({x:.4g}, {y:.4g}) m at first, is turned inside out: it is deformed beyond any "
-        "theory",
+        f"cell {cell} of the structure, at ({x:.4g}, {y:.4g}) m at first, is turned inside out: it is deformed "
+        "beyond any theory",
         "deformation",
     )
 
@@ -44,8 +44,8 @@ def _too_fast(model: Model) -> Sign | None:
     if share <= FARTHEST_STEP:
         return None
     return Sign(
-        f"{culprit.name_of_node(model, node)} moves at {speed[node]:.4g} m/s, {share:.3g} of the smallest grain's radius in a "
-        f"step, more than {FARTHEST_STEP:g}: grains would be passed over",
+        f"{culprit.name_of_node(model, node)} moves at {speed[node]:.4g} m/s, {share:.3g} of the smallest grain's radius in "
+        f"a step, more than {FARTHEST_STEP:g}: grains would be passed over",
         "step",
         FARTHEST_STEP / share,
     )
@@ -60,8 +60,8 @@ def _through_wall(model: Model) -> Sign | None:
         node = int(np.argmax(behind))
         if behind[node] > THROUGH_WALL * _smallest_radius(model):
             return Sign(
-                f"{culprit.name_of_node(model, node)} is {behind[node]:.3g} m behind the wall {wall.name!r}: walls hold grains, "
-                "not structures",
+                f"{culprit.name_of_node(model, node)} is {behind[node]:.3g} m behind the wall {wall.name!r}: walls hold "
+                "grains, not structures",
                 "wall",
             )
     return None
@@ -82,7 +82,7 @@ def _swallows(model: Model) -> Sign | None:
 
 
 def _within(points: Floats, places: Floats, facets: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Whether points (n, 2) are inside a closed polyline: a ray from them to the right crosses it an odd number of times."""
+    """Whether points (n, 2) are inside a closed polyline: a ray to the right crosses it an odd number of times."""
     (x1, y1), (x2, y2) = places[facets[:, 0]].T, places[facets[:, 1]].T
     x, y = points[:, :1], points[:, 1:]
     spans = (y1 > y) != (y2 > y)

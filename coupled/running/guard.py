@@ -69,6 +69,7 @@ class Guard:
     def __init__(self, model: Model, start: dict[str, float], comm: MPI.Intracomm) -> None:
         self._model, self._start, self._comm = model, start, comm
         self._turned, self._wait, self._waited = False, 1, 0
+        self._shook = False
         seen = watchdog.glance(model, start)
         self._good = Good(model.snapshot(), seen, model.steps_done)
         sign = self._sign(seen)
@@ -97,6 +98,10 @@ class Guard:
             if sign is not None:
                 raise self._failure(sign, self._model.steps_done, rattles=True)
             self._wait = min(2 * self._wait, LONGEST_WAIT)
+        if on_root(self._comm, self._shakes_twice):
+            sign = watchdog.feeding_exchange(self._model, seen.look)
+            if sign is not None:
+                raise self._failure(sign, self._model.steps_done)
         self._good = Good(self._model.snapshot(self._good.moment), seen, self._model.steps_done)
         return self._good
 
@@ -108,6 +113,11 @@ class Guard:
             return False
         self._waited = 0
         return True
+
+    def _shakes_twice(self) -> bool:
+        """Whether grains on the structure turn about in this look as in the last one."""
+        before, self._shook = self._shook, watchdog.turning_at_structure(self._model)
+        return before and self._shook
 
     def _sign(self, seen: Glance) -> Sign | None:
         return on_root(self._comm, lambda: watchdog.first_sign(self._model, seen, self._good.glance))

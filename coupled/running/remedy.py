@@ -13,10 +13,10 @@ SHARE_OF_LIMIT = 0.8  # of the limit of the contacts, to be on the safe side of 
 WANTED_OVERLAP = 0.1  # of the smaller radius
 OTHERS = {
     "deformation": "give the structure smaller loads or gentler impacts, or a larger youngs_modulus",
-    "wall": "keep the structure inside, by [[rows]] of fixed grains along the wall, other loads or a shorter duration, or "
-    "leave the wall out of box.walls",
-    "inside": "start with the structure clear of the grains; with glued grains leave no gaps between them and no boundary "
-    "without, or take interface.kind = \"facets\"",
+    "wall": "keep the structure inside, by [[rows]] of fixed grains along the wall, other loads or a shorter duration, "
+    "or leave the wall out of box.walls",
+    "inside": "start with the structure clear of the grains; with glued grains leave no gaps between them and no "
+    'boundary without, or take interface.kind = "facets"',
 }
 
 

@@ -14,13 +14,15 @@ from coupled.running import culprit
 from coupled.running.body_signs import body_sign
 from coupled.running.sign import FARTHEST_STEP, Sign
 from particles import ContactLook, sharp_limit
-from particles.spots import alternating
+from particles.spots import alternating, touching_bodies
 
 DEEPEST_OVERLAP = 0.5  # of the smaller radius: the linear contact has lost its meaning
 ENERGY_MADE = 0.25  # of the energy turned over
 OF_PRESENT = 0.01  # of kinetic and elastic energy, that energy made between two looks must exceed
 AT_INTERFACE = 0.05  # of the same, that the interface may make whatever else is turned over; in sound runs up to 1e-3
 NOISE = 1e-6  # of the energy stored: below it a relative error says nothing
+TURNING_AT_STRUCTURE = 0.1  # of the grains on the structure, for its exchange to be looked at
+FEWEST_TURNING = 2
 TURNING = 2e-3  # share of the free grains that turn about at every step; in sound beds up to 4e-4
 
 
@@ -143,6 +145,35 @@ def turning_grains(model: Model) -> bool:
     """Whether more grains turn about from step to step than births of contacts explain. On rank 0."""
     system = model.particles
     return system is not None and len(alternating(system)) > max(TURNING * system.grains.n_free, 1)
+
+
+def turning_at_structure(model: Model) -> bool:
+    """Whether many of the grains that touch the structure turn about from step to step. On rank 0."""
+    system = model.particles
+    if system is None or model.closed_ratio is None:
+        return False
+    turning = alternating(system)
+    if len(turning) < FEWEST_TURNING:  # most often: touching grains are sought only then
+        return False
+    touching = touching_bodies(system)
+    return len(np.intersect1d(turning, touching)) >= max(FEWEST_TURNING, TURNING_AT_STRUCTURE * len(touching))
+
+
+def feeding_exchange(model: Model, look: ContactLook | None) -> Sign | None:
+    """The contacts of the structure are stiffer than its exchange bears, and grains on it turn about. Collective.
+
+    Contacts that open and dashpots keep such an exchange from exploding, and what it makes of energy may be little
+    beside what is there.
+    """
+    ratio, limit = model.closed_ratio.now(model.particles, look), model.closed_ratio.limit
+    if ratio <= limit:
+        return None
+    return Sign(
+        f"grains on the structure turn about at every step, as its closed contacts have the stiffness ratio r = "
+        f"{ratio:.3g}, above {limit:.4g}",
+        "exchange",
+        limit / ratio,
+    )
 
 
 def rattle(model: Model) -> Sign | None:
