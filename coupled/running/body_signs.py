@@ -44,8 +44,8 @@ def _too_fast(model: Model) -> Sign | None:
     if share <= FARTHEST_STEP:
         return None
     return Sign(
-        f"{culprit.name_of_node(model, node)} moves at {speed[node]:.4g} m/s, {share:.3g} of the smallest grain's radius in "
-        f"a step, more than {FARTHEST_STEP:g}: grains would be passed over",
+        f"{culprit.name_of_node(model, node)} moves at {speed[node]:.4g} m/s, {share:.3g} of the smallest grain's "
+        f"radius in a step, more than {FARTHEST_STEP:g}: grains would be passed over",
         "step",
         FARTHEST_STEP / share,
     )
@@ -60,8 +60,8 @@ def _through_wall(model: Model) -> Sign | None:
         node = int(np.argmax(behind))
         if behind[node] > THROUGH_WALL * _smallest_radius(model):
             return Sign(
-                f"{culprit.name_of_node(model, node)} is {behind[node]:.3g} m behind the wall {wall.name!r}: walls hold "
-                "grains, not structures",
+                f"{culprit.name_of_node(model, node)} is {behind[node]:.3g} m behind the wall {wall.name!r}: walls "
+                "hold grains, not structures",
                 "wall",
             )
     return None
