@@ -66,6 +66,8 @@ FURTHER = {
     "ratio_lammps_granular_105k": "1",
     "ratio_lammps_hooke_history_105k": "1",
     "ratio_liggghts_105k": "1",
+    "search_list_beats_brute_from": "discs",
+    "search_cells_beat_list_from": "discs",
     "structure_ledger": "1",
     "absent_features": "1",
     "structure_overhead_1e6": "1",

@@ -17,11 +17,13 @@ import measures
 import peers
 import processes
 import report
+import search
+import search_figure
 import structure_figure
 import structure_steps
 from rich.console import Console
 
-FEATURES = "features"
+FEATURES, SEARCH = "features", "search"
 MILLION = "million"  # unknowns: three minutes, only on demand
 
 
@@ -33,12 +35,19 @@ def feature_costs(found: list[features.Cost]) -> measures.Numbers:
     return dict(features.ratios(found))
 
 
+def search_costs(found: list[search.Cost]) -> measures.Numbers:
+    """Measure every way to find contacts into `found`, return where one begins to beat another."""
+    found += search.costs(threads=(1, 2) if measures.two_cores() else (1,))
+    return dict(search.crossovers(cost._asdict() for cost in found))
+
+
 def main() -> None:
     """Run all measurements, or those named."""
     groups = {
         "threads": lambda: measures.threads_15k(rates),
         "sizes": lambda: measures.sizes(rates),
         FEATURES: lambda: feature_costs(features_found),
+        SEARCH: lambda: search_costs(search_found),
         "phases": lambda: measures.phases(rates),
         "ratio": lambda: measures.size_ratio(rates),
         "start": processes.starts,
@@ -56,7 +65,7 @@ def main() -> None:
     chosen = parser.parse_args().groups or usual
     if unknown := set(chosen) - set(groups):
         parser.error(f"unknown group {', '.join(sorted(unknown))}: take any of {', '.join(groups)}")
-    rates, steps, features_found = measures.Rates(), structure_steps.Rows(), []
+    rates, steps, features_found, search_found = measures.Rates(), structure_steps.Rows(), [], []
     console = Console(stderr=True)
     values: measures.Numbers = {}
     for name in chosen:
@@ -74,12 +83,16 @@ def main() -> None:
         more["structure"] = report.joined_structure(steps.rows)
     if features_found:
         more[FEATURES] = [cost._asdict() for cost in features_found]
+    if search_found:
+        more[SEARCH] = [cost._asdict() for cost in search_found]
     report.write(values, rates.rows, anew=complete, **more)
     report.show()
     if steps.rows:
         console.print(f"drawn: {structure_figure.draw(report.read())}")
     if features_found:
         console.print(f"drawn: {features_figure.draw(report.read())}")
+    if search_found:
+        console.print(f"drawn: {search_figure.draw(report.read())}")
     if "sizes" in chosen:
         console.print(f"drawn: {figure.draw(report.read())}")
 

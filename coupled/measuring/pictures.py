@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from coupled.measuring.findings import Findings
+from coupled.measuring.record import Floats
 from coupled.measuring.rises import Rise, height_over_floor
 from coupled.measuring.states import Rolls
 from coupled.report.drawing import Axes, Figure, plt
@@ -17,6 +18,7 @@ from particles.measures import portrait, strobe
 
 WIDTH = 7.0
 COLOURS = ("#1f5a94", "#c1440e", "#2a9d8f", "#7b4b94", "#e09f3e", "#5d6d7e")
+FEWEST_SAMPLES = 3  # for a band: of two it is wider than the picture
 FEWEST_ROWS = 8  # of the history in a period, for a portrait
 
 
@@ -72,14 +74,22 @@ def heights(found: Sequence[Findings]) -> Figure | None:
         period = (rise.time - shaken.start) / shaken.period
         told = f"{label}, {len(rise.samples)} sample{'s' * (len(rise.samples) > 1)}"
         axes.plot(period, rise.mean, color=colour, lw=2.0, label=told)
-        if len(rise.samples) > 1:
+        if len(rise.samples) >= FEWEST_SAMPLES:
             low, high = rise.mean - rise.half_width, rise.mean + rise.half_width
             axes.fill_between(period, low, high, color=colour, alpha=0.15, lw=0)
     axes.set(xlabel="periods of shaking", ylabel=_length(found, "height of the intruder over the floor"))
     axes.set_title(_title(found), fontsize=10)
+    axes.set_ylim(*_reach([sample.value for _, rise, _ in curves for sample in rise.samples]))
     axes.legend(fontsize=8, frameon=False)
     axes.grid(alpha=0.25)
     return figure
+
+
+def _reach(curves: Sequence[Floats]) -> tuple[float, float]:
+    """Limits of an axis that holds curves (n,), whatever bands go beyond."""
+    low, high = min(float(curve.min()) for curve in curves), max(float(curve.max()) for curve in curves)
+    margin = 0.06 * (high - low) or 1.0
+    return low - margin, high + margin
 
 
 def rise_rates(found: Sequence[Findings]) -> Figure | None:
@@ -88,17 +98,22 @@ def rise_rates(found: Sequence[Findings]) -> Figure | None:
     if not curves:
         return None
     figure, axes = plt.subplots(figsize=(WIDTH, 3.6), layout="constrained")
+    shaken, shown = found[0].group.records[0].shaken, [np.zeros(1)]
     for label, rise, colour in curves:
         window = max(1, len(rise.time) // 10)
         mean = rise.mean[::window]
-        middle = np.arange(len(mean) - 1) * window + 0.5 * window
-        axes.plot(middle, np.diff(mean) / window, "o-", color=colour, ms=4, lw=1.2, label=label)
+        middle = (rise.time[0] - shaken.start) / shaken.period + (np.arange(len(mean) - 1) + 0.5) * window
+        shown.append(np.diff(mean) / window)
+        axes.plot(middle, shown[-1], "o-", color=colour, ms=4, lw=1.2, label=label)
         axes.axhline(rise.rate.mean, color=colour, lw=0.8, ls="--")
         if rise.rate.count > 1:
             axes.axhspan(rise.rate.low, rise.rate.high, color=colour, alpha=0.08, lw=0)
     axes.axhline(0.0, color="0.4", lw=0.8)
     axes.set(xlabel="periods of shaking", ylabel=_length(found, "rise per period"))
-    axes.set_title(f"{_title(found)}: means over windows, dashed the whole with its 95 % interval", fontsize=9)
+    axes.set_title(
+        f"{_title(found)}\nmeans over tenths of the record; dashed the whole, with its 95 % interval", fontsize=9
+    )
+    axes.set_ylim(*_reach(shown))
     axes.legend(fontsize=8, frameon=False)
     axes.grid(alpha=0.25)
     return figure
@@ -218,8 +233,10 @@ def large_deviation(one: Findings) -> Figure | None:
     known = np.isfinite(chosen.rate)
     left.plot(chosen.v[known], chosen.rate[known], "r-", lw=1.4, label="Legendre transform")
     left.set(xlabel=_length([one], "rise per period v"), ylabel="I(v)")
-    left.set_ylim(bottom=min(0.0, left.get_ylim()[0]))
-    left.legend(fontsize=7, frameon=False)
+    if not known.any() and not any(np.isfinite(curve.rate).any() for curve in found.curves):
+        left.text(0.5, 0.5, "too few windows", ha="center", va="center", transform=left.transAxes, fontsize=9)
+    else:
+        left.legend(fontsize=7, frameon=False)
     _draw_symmetry(right, one, rise, tones)
     figure.suptitle(f"{one.group.label}: {rise.name}, {len(rise.samples)} samples", fontsize=10)
     return figure

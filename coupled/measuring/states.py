@@ -77,8 +77,21 @@ def _counted(record: Record, periods: Periods) -> np.ndarray:
 
 def frames_of(record: Record, periods: Periods) -> Iterator[Frame]:
     """The frames that count, one at a time."""
-    for number in _counted(record, periods):
-        yield read_frame(record.frame_paths("grains")[number])
+    return _read(record, _counted(record, periods))
+
+
+def _read(record: Record, numbers: np.ndarray) -> Iterator[Frame]:
+    paths = record.frame_paths("grains")
+    return (read_frame(paths[number]) for number in numbers)
+
+
+def _of_one_phase(record: Record, periods: Periods) -> np.ndarray:
+    """Those of the frames that count that share the phase of most: a run may end between two of them."""
+    counted = _counted(record, periods)
+    phase = record.frame_times("grains")[counted] / record.shaken.period
+    off = phase[:, None] - phase
+    together = np.abs(off - np.round(off)) < SAME_PHASE
+    return counted[together[together.sum(axis=1).argmax()]] if len(counted) else counted
 
 
 def profiles_of(group: Group, periods: Periods) -> Profiles | None:
@@ -107,8 +120,7 @@ def _extent(record: Record, periods: Periods) -> tuple[float, float, float, floa
     """Left side, width, mean diameter and highest grain over the floor [m]."""
     left, right, top, diameter = np.inf, -np.inf, 0.0, None
     counted = _counted(record, periods)
-    for number in counted[:: max(1, len(counted) // LOOKED_AT)]:
-        time, arrays = read_frame(record.frame_paths("grains")[number])
+    for time, arrays in _read(record, counted[:: max(1, len(counted) // LOOKED_AT)]):
         own = _own(record, arrays)
         if not own.any():
             return None
@@ -203,23 +215,23 @@ def periods_between_frames(record: Record, periods: Periods) -> int:
     Raises
     ------
     ParticleError
-        If there are fewer than two frames, or they are not of one phase.
+        If there are fewer than two frames of one phase, or they are not evenly spaced.
     """
-    times = record.frame_times("grains")[_counted(record, periods)]
-    if len(times) < 2:
-        raise ParticleError(f"no convection is seen: {record.folder} has {len(times)} frames in the periods that count")
-    apart = np.diff(times) / record.shaken.period
-    whole = round(float(apart.mean()))
+    times = record.frame_times("grains")
+    apart = np.diff(times[_of_one_phase(record, periods)]) / record.shaken.period
+    whole = round(float(apart.mean())) if len(apart) else 0
     if whole < 1 or np.abs(apart - whole).max() > SAME_PHASE:
+        usual = np.diff(times) / record.shaken.period
         raise ParticleError(
-            f"no convection is seen: the frames of {record.folder} are {apart.min():.3g} to {apart.max():.3g} periods "
-            "apart; set output.frames_per_second to 1/period or a whole part of it"
+            f"no convection is seen: of {len(_counted(record, periods))} frames of {record.folder} that count, "
+            f"{usual.max(initial=0.0):.3g} periods apart at most, no two are of one phase and evenly spaced; set "
+            "output.frames_per_second to 1/period or a whole part of it"
         )
     return whole
 
 
 def _places(record: Record, periods: Periods) -> Iterator[Floats]:
-    for time, arrays in frames_of(record, periods):
+    for time, arrays in _read(record, _of_one_phase(record, periods)):
         points = np.array(arrays["points"][_own(record, arrays)], float)
         points[:, 1] -= _lift(record, time)
         yield points

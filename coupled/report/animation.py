@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +19,8 @@ Arrays = dict[str, np.ndarray]
 LAYERS = 8
 MOST_FRAMES = 200  # of a film whose `every` is not given
 FASTEST = 25.0  # frames per second of the film
-WIDTH, DPI = 6.4, 100  # inches of the picture
+WIDTH, HIGHEST, NARROWEST, DPI = 6.4, 6.4, 4.0, 100  # inches of the picture
+TITLE, LETTERS = 0.45, 14  # inches, letters per inch
 INTRUDER, PRESCRIBED = (200, 30, 45), (110, 110, 110)
 SHADES = (
     (68, 101, 137), (126, 166, 196), (196, 216, 226), (240, 228, 190),
@@ -82,20 +84,22 @@ def _writer(target: Path, rate: float) -> AbstractMovieWriter:
 
 def _film(record: Record, target: Path, writer: AbstractMovieWriter, every: int) -> None:
     view = _view(record, every)
-    extent = view.high - view.low
-    figure = plt.figure(figsize=(WIDTH, WIDTH * float(np.clip(extent[1] / extent[0], 0.15, 1.6)) + 0.45), dpi=DPI)
+    shape = float((view.high - view.low)[1] / (view.high - view.low)[0])
+    tall = min(WIDTH * shape, HIGHEST)
+    figure = plt.figure(figsize=(max(tall / shape, NARROWEST), max(tall, 0.15 * WIDTH) + TITLE), dpi=DPI)
     height = figure.get_figheight()
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0 - 0.45 / height))
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0 - TITLE / height))
     axes.set(xlim=(view.low[0], view.high[0]), ylim=(view.low[1], view.high[1]), aspect="equal")
     axes.axis("off")
-    canvas = Canvas(view.low, view.high, round(WIDTH * DPI))
+    canvas = Canvas(view.low, view.high, round(tall / shape * DPI))
     picture = axes.imshow(
         canvas.image(), origin="lower", extent=(view.low[0], view.high[0], view.low[1], view.high[1]), aspect="equal"
     )
     cells = PolyCollection([], facecolors="#4d5a63", edgecolors="#20262b", linewidths=0.4)
     axes.add_collection(cells)
     walls = _draw_walls(record, axes)
-    title = figure.text(0.5, 1.0 - 0.22 / height, "", ha="center", va="center", fontsize=9)
+    title = figure.text(0.5, 1.0 - 0.5 * TITLE / height, "", ha="center", va="center", fontsize=9)
+    said = textwrap.shorten(record.title, round(LETTERS * figure.get_figwidth()), placeholder=" ...")
     with writer.saving(figure, str(target), DPI):
         for time, grains, structure in _moments(record, every):
             if grains is not None:
@@ -106,7 +110,7 @@ def _film(record: Record, target: Path, writer: AbstractMovieWriter, every: int)
                 cells.set_verts(_outlines(structure))
             for line, home in walls:
                 line.set_ydata(np.array(home) + _floor(record, time))
-            title.set_text(f"{record.title}\n{_clock(record, time)}")
+            title.set_text(f"{said}\n{_clock(record, time)}")
             writer.grab_frame()
     plt.close(figure)
 

@@ -144,7 +144,8 @@ class Cumulants:
         lambda(k) [-]; not a number where fewer than 40 windows carry the mean.
     v, rate : (m,)
         Of the Legendre transform: ``v = d lambda/dk`` [m], ``I = k v - lambda`` [-], with the same half width: at its
-        maximum k does not count. About the mean it falls to zero; the error is of second order there.
+        maximum k does not count. About the mean it falls to zero; the error is of second order there. Not a number
+        beyond where v rises with k, as it must.
     """
 
     k: Floats
@@ -176,9 +177,24 @@ def cumulants(sampling: Resampling, periods: int, k: ArrayLike) -> Cumulants:
         known &= carriers >= FEWEST_WINDOWS
     value, slope, change = (part / (long - short) for part in (value, slope, change))
     known &= sampling.half_width(change) * (long - short) < 2.0 * LARGEST_ERROR
-    value, slope = np.where(known, value, np.nan), np.where(known, slope, np.nan)
-    half = np.where(known, sampling.half_width(change), np.nan)
+    value, half = (np.where(known, part, np.nan) for part in (value, sampling.half_width(change)))
+    slope = np.where(known & _convex(tilt, slope, known), slope, np.nan)
     return Cumulants(k=tilt, value=value, half_width=half, v=slope, rate=tilt * slope - value)
+
+
+def _convex(tilt: Floats, slope: Floats, known: np.ndarray) -> np.ndarray:
+    """Where the slope rises with k, from the smallest |k| outwards: beyond, there is no transform."""
+    order = np.argsort(tilt)[known[np.argsort(tilt)]]
+    rises = np.zeros(len(tilt), bool)
+    if not len(order):
+        return rises
+    middle, steps = int(np.argmin(np.abs(tilt[order]))), np.diff(slope[order]) > 0.0
+    up, down = steps[middle:], steps[:middle][::-1]
+    above = len(up) if up.all() else int(np.argmin(up))
+    below = len(down) if down.all() else int(np.argmin(down))
+    if above + below or len(order) == 1:
+        rises[order[middle - below : middle + above + 1]] = True
+    return rises
 
 
 def _tilted(sampling: Resampling, periods: int, tilt: Floats) -> tuple[Floats, Floats, Floats, Floats]:

@@ -114,7 +114,7 @@ def test_a_run_is_measured_alone_and_too_short_a_one_says_what_is_missing(tmp_pa
     short = make(tmp_path / "short", np.full(0, 0.1), frames=1)
     (one,) = find([short], Periods())
     assert not one.rises and one.rolls is None and one.profiles is not None
-    assert "run longer" in one.notes[0] and "1 frames" in one.notes[1]
+    assert "run longer" in one.notes[0] and "of 1 frames" in one.notes[1]
 
 
 def test_frames_off_the_phase_make_no_convection(tmp_path):
@@ -123,7 +123,7 @@ def test_frames_off_the_phase_make_no_convection(tmp_path):
     (run / "scene.toml").write_text(text.replace("period = 4.0", "period = 3.0"))
     (one,) = find([run], Periods())
     assert one.rolls is None
-    assert any("2.67 to 2.67 periods apart; set output.frames_per_second" in note for note in one.notes)
+    assert any("2.67 periods apart at most" in note and "set output.frames_per_second" in note for note in one.notes)
 
 
 def test_refusals(tmp_path):

@@ -213,6 +213,16 @@ def test_far_tails_are_left_open_instead_of_guessed():
     assert np.isnan(curve.rate[curve.count < 8]).all()
 
 
+def test_increments_that_cancel_have_no_transform_by_chance():
+    """Differences of noise: sums do not spread with n, lambda is zero, and its slope rises with k by noise alone."""
+    for seed in range(20):
+        noise = np.random.default_rng(seed).standard_normal(1001)
+        found = cumulants(Resampling(sequences=(np.diff(noise),), longest=4), 4, np.linspace(-0.8, 0.8, 9))
+        known = np.isfinite(found.rate)
+        assert (np.diff(found.v[known]) > 0.0).all()
+        assert (found.rate[known] > -2.0 * found.half_width[known] - 1e-3).all()
+
+
 def test_windows_do_not_reach_across_samples():
     sequences = checked_sequences([np.full(200, 1.0), np.full(200, -1.0)])
     sampling = Resampling(sequences=sequences, longest=4)
