@@ -92,10 +92,10 @@ def _one_of_each(scene: Scene) -> dem.Grains:
 
 
 def _kinds(scene: Scene, with_intruders: bool) -> dem.Grains:
-    """A free grain of each size, and the intruders."""
+    """A free grain of each size, if there are any, and the intruders."""
     table, intruders = scene.first_grains, scene.intruders if with_intruders else ()
-    radius = np.concatenate([_radii(size) for size in table.sizes])
-    density = np.full(len(radius), table.density)
+    radius = np.concatenate([np.zeros(0), *(_radii(size) for size in (table.sizes if table else ()))])
+    density = np.full(len(radius), table.density if table else 0.0)
     radius = np.append(radius, [intruder.radius for intruder in intruders])
     density = np.append(density, [intruder.density for intruder in intruders])
     return dem.Grains.discs(np.zeros((len(radius), 2)), radius, density)

@@ -9,6 +9,7 @@ from pathlib import Path
 from coupled.campaign.task import Outcome, Task
 from coupled.output.folder import SCENE, SUMMARY, finished, require_same_scene
 from coupled.scene import Scene
+from coupled.scene.knobs import plain
 
 
 def require_own(task: Task) -> None:
@@ -61,7 +62,8 @@ def _last_time(path: Path) -> float:
 
 
 def _numbered(scene: Scene) -> Scene:
-    """The scene with a number where its step is left to the model, as a run writes it."""
+    """The scene with numbers in place of factors and where its step is left to the model, as a run writes it."""
+    scene = plain(scene)
     steps = [scene.time.step, None if scene.bed is None else scene.bed.time.step]
     if "auto" not in steps:
         return scene

@@ -14,7 +14,7 @@ from coupled.errors import LeitoError
 
 def study(
     scene: SceneArgument,
-    knobs: Annotated[str | None, typer.Option(metavar="A,B", help="Knobs to turn; all by default.")] = None,
+    knobs: Annotated[str | None, typer.Option(metavar="A,B", help="Knobs to turn, or none; all by default.")] = None,
     values: Annotated[
         list[str] | None, typer.Option(metavar="KNOB=A,B,C", help="Values of a knob to try, e.g. step=2,1,0.5.")
     ] = None,
@@ -35,13 +35,13 @@ def study(
     refuse_both(resume, overwrite)
     if budget is not None and not budget > 0.0:
         raise LeitoError(f"--budget {budget:g}: must be greater than 0; give the seconds that all runs may take")
-    from coupled.study.ask import knob_values
+    from coupled.study.ask import knob_names, knob_values
     from coupled.study.study import Wishes, run_study
     from coupled.study.table import HEADER
 
     wishes = Wishes(
         overrides=tuple(overrides or ()),
-        knobs=tuple(name.strip() for name in knobs.split(",")) if knobs else (),
+        knobs=None if knobs is None else knob_names(knobs),
         values=knob_values(values or ()),
         reference=tuple(reference or ()),
         seeds=seeds,

@@ -11,6 +11,11 @@ from coupled.study.knobs import BY_NAME
 from coupled.study.turns import Value
 
 
+def knob_names(text: str) -> tuple[str, ...]:
+    """Read names of knobs between commas; the word none is no knob."""
+    return () if text.strip() == "none" else tuple(name.strip() for name in text.split(","))
+
+
 def knob_values(texts: Iterable[str]) -> dict[str, tuple[Value, ...]]:
     """Read values of knobs; numbers of a knob whose values are numbers must be positive.
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 from coupled.errors import LeitoError
-from coupled.scene import Scene
 from coupled.study.cost import Trial, work
+from coupled.study.coupling import borne
 from coupled.study.errors import Judged
 from coupled.study.knob import Knob
-from coupled.study.plan import Load
-from coupled.study.setting import Setting
+from coupled.study.plan import name_of
+from coupled.study.setting import Load, Setting
 from coupled.study.turns import Changes, Value
 
 WORSE = 1.1  # of the base's known error: what still counts as no loss
@@ -70,10 +69,9 @@ def _together(turned: Sequence[tuple[Knob, Value]], load: Load, trial: Trial) ->
                 threads = int(value)
             else:
                 changes += knob.turn(load(changes), value)
-        scene: Scene = load(changes)
-        cost = work(scene, base, trial, threads)
+        changes, _ = borne(load, changes)
+        cost = work(load(changes), base, trial, threads)
     except (LeitoError, ValueError):
         return None
     pairs = tuple((knob.name, knob.label(value)) for knob, value in turned)
-    name = ", ".join(f"{knob} = {value}" for knob, value in pairs)
-    return replace(Setting(name=name, role="combination", knobs=pairs, changes=changes, threads=threads), work=cost)
+    return Setting(name=name_of(pairs), role="combination", knobs=pairs, changes=changes, threads=threads, work=cost)

@@ -9,6 +9,10 @@ from coupled.scene import Scene
 from coupled.study.turns import Changes, Value
 
 
+def _always(scene: Scene) -> bool:
+    return True
+
+
 @dataclass(frozen=True, kw_only=True)
 class Knob:
     """Something that can be turned without changing the case that a scene describes.
@@ -26,6 +30,11 @@ class Knob:
         Overrides of a level of refinement, 1 for twice as fine; for knobs that the reference refines.
     falls : bool
         Whether the error falls with a power of the value, so that an order can be read off.
+    usual : function
+        Whether it is turned where nobody names it.
+    sets_step : bool
+        Whether the step itself is what is turned. A setting of any other knob that the exchange would not bear takes
+        the longest step that it does.
     threads : bool
         Whether it is the number of threads, which is no key.
     speed_only : bool
@@ -39,6 +48,8 @@ class Knob:
     turn: Callable[[Scene, Value], Changes]
     refine: Callable[[Scene, int], Changes] | None = None
     falls: bool = False
+    usual: Callable[[Scene], bool] = _always
+    sets_step: bool = False
     threads: bool = False
     speed_only: bool = False
 

@@ -11,6 +11,8 @@ from coupled.study import turns
 from coupled.study.knob import Knob
 from coupled.study.turns import Changes, Value, set_key
 
+OPEN_STEP = 0.0  # the fraction of a step that is given as a number: none of those that are tried
+
 
 def _has_grains(scene: Scene) -> bool:
     return scene.grains is not None
@@ -58,11 +60,44 @@ KNOBS: tuple[Knob, ...] = (
     Knob(
         name="step",
         meaning="time step over that of the scene",
-        values=(4.0, 2.0, 1.25, 0.5),
+        values=(4.0, 2.0, 0.5),
         own=lambda scene: 1.0,
         turn=turns.step,
         refine=lambda scene, level: turns.step(scene, 0.5**level),
         falls=True,
+        sets_step=True,
+        usual=lambda scene: not _has_grains(scene),
+    ),
+    Knob(
+        name="fraction",
+        meaning="time step over the sharp limit of grains and coupling",
+        values=(0.9, 0.6, 0.3),
+        own=lambda scene: (scene.time.step_fraction or OPEN_STEP) if _has_grains(scene) else None,
+        turn=turns.fraction,
+        falls=True,
+        sets_step=True,
+    ),
+    Knob(
+        name="integrator",
+        meaning="scheme of the grains",
+        values=("leapfrog", "velocity_verlet"),
+        own=lambda scene: scene.time.integrator if _has_grains(scene) else None,
+        turn=_set("time.integrator"),
+    ),
+    Knob(
+        name="coarsening",
+        meaning="size of the grains over that of the scene",
+        values=(3.0, 2.0, 1.5),
+        own=lambda scene: 1.0 if scene.first_grains is not None and scene.first_grains.layout == "lattice" else None,
+        turn=turns.coarsening,
+        falls=True,
+    ),
+    Knob(
+        name="stiffness",
+        meaning="contact springs over those of the scene",
+        values=(0.1, 0.3, 3.0),
+        own=lambda scene: 1.0 if _has_grains(scene) and scene.contact is not None else None,
+        turn=turns.stiffness,
     ),
     Knob(
         name="substeps",
@@ -71,6 +106,7 @@ KNOBS: tuple[Knob, ...] = (
         own=lambda scene: scene.interface.substeps if scene.interface and _has_grains(scene) else None,
         turn=_set("interface.substeps"),
         falls=True,
+        sets_step=True,
     ),
     Knob(
         name="mesh",
@@ -142,8 +178,8 @@ KNOBS: tuple[Knob, ...] = (
 BY_NAME = {knob.name: knob for knob in KNOBS}
 
 
-def knobs_of(scene: Scene, wanted: Iterable[str] = ()) -> list[Knob]:
-    """The knobs that a scene has, or those wanted of them.
+def knobs_of(scene: Scene, wanted: Iterable[str] | None = None) -> list[Knob]:
+    """The knobs of a scene that are turned where nobody names any, or those wanted.
 
     Raises
     ------
@@ -151,6 +187,8 @@ def knobs_of(scene: Scene, wanted: Iterable[str] = ()) -> list[Knob]:
         If a wanted one is unknown, or this scene does not have it.
     """
     there = [knob for knob in KNOBS if knob.own(scene) is not None]
+    if wanted is None:
+        return [knob for knob in there if knob.usual(scene)]
     names = list(dict.fromkeys(wanted))
     for name in names:
         if name not in BY_NAME:
@@ -160,7 +198,12 @@ def knobs_of(scene: Scene, wanted: Iterable[str] = ()) -> list[Knob]:
             raise LeitoError(
                 f"--knobs {name}: this scene has no {name} to turn ({BY_NAME[name].meaning}); it has {has}"
             )
-    return [knob for knob in there if not names or knob.name in names]
+    return [knob for knob in there if knob.name in names]
+
+
+def refined_together(scene: Scene) -> list[Knob]:
+    """The knobs of a scene that the reference refines."""
+    return [knob for knob in KNOBS if knob.own(scene) is not None and knob.refine is not None]
 
 
 def values_of(knob: Knob, scene: Scene, asked: Mapping[str, tuple[Value, ...]]) -> list[Value]:

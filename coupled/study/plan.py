@@ -4,26 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 from coupled.errors import LeitoError
 from coupled.scene import Scene
+from coupled.step import with_step
 from coupled.study.cost import Trial, work
+from coupled.study.coupling import borne
 from coupled.study.knob import Knob
-from coupled.study.knobs import knobs_of, values_of
-from coupled.study.setting import Setting
+from coupled.study.knobs import refined_together, values_of
+from coupled.study.setting import Load, Setting
 from coupled.study.turns import Changes, Value
 
 PRESETS: tuple[str, ...] = ()
-LEVELS = 2  # of refinement of the reference, each twice as fine, unless the budget wants less
+LEVELS = 2  # of refinement of the reference, each twice as fine, unless the budget or the user wants less
 REFERENCE_SHARE = 0.5  # of a budget, for the reference and the level before it
 BASE, FINEST = "as it is", "finest"
-
-
-class Load(Protocol):
-    """Reads the scene of the study with further overrides and a preset."""
-
-    def __call__(self, changes: Changes = (), accuracy: str | None = None) -> Scene: ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,12 +41,15 @@ class Terms:
         Runs per setting; runs side by side.
     budget : float, optional
         Wall time of all runs [s].
+    levels : int
+        Of refinement of the reference.
     """
 
     trial: Trial
     samples: int
     workers: int
     budget: float | None = None
+    levels: int = LEVELS
 
     def seconds(self, settings: Sequence[Setting]) -> float:
         """Estimated wall time of some settings [s]."""
@@ -81,7 +79,7 @@ def make_plan(
     weigh = _weigher(load, base, terms.trial)
     first = [Setting(name=BASE, role="base"), *_reference(load, base, reference, weigh, terms)]
     others = [weigh(Setting(name=f"accuracy = {name}", role="preset", accuracy=name)) for name in PRESETS]
-    turned = [weigh(one_turn(knob, value, base)) for knob in knobs for value in values_of(knob, base, asked)]
+    turned = [weigh(one_turn(load, knob, value, base)) for knob in knobs for value in values_of(knob, base, asked)]
     others += sorted(turned, key=lambda setting: setting.work)
     if terms.budget is not None and terms.seconds(first) > terms.budget:
         raise LeitoError(
@@ -102,14 +100,31 @@ def _within(kept: list[Setting], others: Sequence[Setting], terms: Terms) -> tup
     return kept, left
 
 
-def one_turn(knob: Knob, value: Value, base: Scene) -> Setting:
-    """The base with one knob turned."""
+def one_turn(load: Load, knob: Knob, value: Value, base: Scene) -> Setting:
+    """The base with one knob turned, and a shorter step where the exchange asks for it."""
     label = knob.label(value)
-    changes = () if knob.threads else knob.turn(base, value)
-    threads = int(value) if knob.threads else 1
-    return Setting(
-        name=f"{knob.name} = {label}", role="knob", knobs=((knob.name, label),), changes=changes, threads=threads
-    )
+    turned = ((knob.name, label),)
+    setting = Setting(name=name_of(turned), role="knob", knobs=turned)
+    if knob.threads:
+        return replace(setting, threads=int(value))
+    changes = knob.turn(base, value)
+    return replace(setting, changes=changes) if knob.sets_step else _on_a_step(load, replace(setting, changes=changes))
+
+
+def name_of(turned: Sequence[tuple[str, str]]) -> str:
+    """Name of a setting with these knobs turned."""
+    return ", ".join(f"{knob} = {value}" for knob, value in turned)
+
+
+def _on_a_step(load: Load, setting: Setting) -> Setting:
+    """The setting with the longest step that its exchange bears; as it is if it is refused, which the run will say."""
+    try:
+        changes, factor = borne(load, setting.changes)
+    except (LeitoError, ValueError):
+        return setting
+    if factor == 1.0:
+        return setting
+    return replace(setting, name=f"{setting.name}, step x {factor:.2g}", changes=changes)
 
 
 def _weigher(load: Load, base: Scene, trial: Trial) -> Callable[[Setting], Setting]:
@@ -131,8 +146,8 @@ def _reference(
     if given:
         return [weigh(Setting(name=FINEST, role="reference", changes=given))]
     found: list[Setting] = []
-    for level in range(1, LEVELS + 1):
-        setting = weigh(_level(load, knobs_of(base), level))
+    for level in range(1, terms.levels + 1):
+        setting = weigh(_level(load, refined_together(base), level))
         affordable = terms.budget is None or terms.seconds([*found, setting]) <= REFERENCE_SHARE * terms.budget
         if found and not affordable:
             break
@@ -142,11 +157,16 @@ def _reference(
 
 
 def _level(load: Load, knobs: Sequence[Knob], level: int) -> Setting:
-    """All knobs that have levels, refined together."""
+    """All knobs that have levels, refined together; one that the scene refuses to refine stays."""
     changes: Changes = ()
     turned = []
     for knob in knobs:
-        if knob.refine is not None:
-            changes += knob.refine(load(changes), level)
-            turned.append((knob.name, f"level {level}"))
+        try:
+            finer = changes + knob.refine(load(changes), level)
+            with_step(load(finer))
+        except LeitoError:  # such as a row of springs under the facets, which fixes their number
+            continue
+        changes = finer
+        turned.append((knob.name, f"level {level}"))
+    changes, _ = borne(load, changes)
     return Setting(name=FINEST, role="reference", changes=changes, knobs=tuple(turned))

@@ -11,10 +11,10 @@ from pathlib import Path
 from coupled.campaign import Outcome, Task, run_all
 from coupled.errors import Interrupted, LeitoError, is_sentence
 from coupled.scene import Scene, dump_scene
+from coupled.step import with_step
 from coupled.study.measure import came_to
-from coupled.study.plan import Load
 from coupled.study.seeds import seed_key
-from coupled.study.setting import Ran, Setting
+from coupled.study.setting import Load, Ran, Setting
 
 RUNS = "runs"
 
@@ -79,7 +79,7 @@ class Runner:
     def _sample(self, setting: Setting, seed: int | None) -> Scene:
         key = seed_key(self._load())
         changes = setting.changes if seed is None else (*setting.changes, f"{key}={seed}")
-        return self._load(changes, setting.accuracy)
+        return with_step(self._load(changes, setting.accuracy))
 
     def _task(self, setting: Setting, scene: Scene, seed: int | None) -> Task:
         digest = hashlib.sha256(f"{dump_scene(scene)}{setting.threads}".encode()).hexdigest()[:8]

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, Protocol
+
+from coupled.scene import Scene
 
 Role = Literal["base", "knob", "preset", "finer", "reference", "combination"]
 Status = Literal["done", "refused", "failed", "stopped", "left out"]
+
+
+class Load(Protocol):
+    """Reads the scene of the study with further overrides and a preset."""
+
+    def __call__(self, changes: tuple[str, ...] = (), accuracy: str | None = None) -> Scene: ...
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,11 +22,11 @@ from coupled.study.judge import judge_all, references
 from coupled.study.knob import Knob
 from coupled.study.knobs import knobs_of, values_of
 from coupled.study.picture import draw_front
-from coupled.study.plan import Load, Plan, Terms, make_plan, one_turn
+from coupled.study.plan import LEVELS, Plan, Terms, make_plan, one_turn
 from coupled.study.reference import Reference
 from coupled.study.runs import RUNS, Runner
 from coupled.study.seeds import seeds_of
-from coupled.study.setting import Ran, Setting
+from coupled.study.setting import Load, Ran, Setting
 from coupled.study.turns import Changes, Value
 from coupled.study.words import Told, text_of
 
@@ -42,8 +42,8 @@ class Wishes:
     ----------
     overrides : tuple
         Of the scene in every setting.
-    knobs : tuple
-        Names; empty: all that the scene has.
+    knobs : tuple, optional
+        Names; none at all for presets and reference alone; absent: all that the scene has.
     values : dict
         Values to try, by knob.
     reference : tuple
@@ -52,15 +52,18 @@ class Wishes:
         Samples per setting; runs side by side.
     budget : float, optional
         Wall time of all runs [s].
+    levels : int
+        Of refinement of the reference.
     """
 
     overrides: tuple[str, ...] = ()
-    knobs: tuple[str, ...] = ()
+    knobs: tuple[str, ...] | None = None
     values: Mapping[str, tuple[Value, ...]] = field(default_factory=dict)
     reference: Changes = ()
     seeds: int | None = None
     jobs: int | None = None
     budget: float | None = None
+    levels: int = LEVELS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,7 +80,7 @@ class Case:
     def turned(self) -> dict[str, tuple[Knob, Value]]:
         """Knob and value of each setting of one knob, by the setting's name."""
         pairs = [(knob, value) for knob in self.knobs for value in values_of(knob, self.base, self.values)]
-        return {one_turn(knob, value, self.base).name: (knob, value) for knob, value in pairs}
+        return {one_turn(self.load, knob, value, self.base).name: (knob, value) for knob, value in pairs}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,12 +137,15 @@ def run_study(
     base = load()
     case = Case(
         load=load, base=base, quantities=_quantities(base, scene), values=wishes.values,
-        knobs=knobs_of(base, (*wishes.knobs, *wishes.values)), seeds=seeds_of(base, wishes.seeds),
+        knobs=_knobs(base, wishes), seeds=seeds_of(base, wishes.seeds),
     )  # fmt: skip
     load(wishes.reference)  # a reference that cannot be is refused at once
     _take(out, resume, overwrite)
     workers = wishes.jobs or os.cpu_count() or 1
-    terms = Terms(trial=_trial(base, out), samples=max(1, len(case.seeds)), workers=workers, budget=wishes.budget)
+    terms = Terms(
+        trial=_trial(base, out), samples=max(1, len(case.seeds)), workers=workers, budget=wishes.budget,
+        levels=wishes.levels,
+    )  # fmt: skip
     plan = make_plan(load, case.knobs, wishes.values, wishes.reference, terms)
     say(_announcement(plan, terms, out))
     runner = Runner(load, out, case.seeds, wishes.jobs, progress)
@@ -155,6 +161,13 @@ def _quantities(scene: Scene, name: str | Path) -> Sequence[Quantity]:
             '[[quantities]] with name, kind and column, e.g. kind = "drop", column = "centroid_y"'
         )
     return scene.quantities
+
+
+def _knobs(base: Scene, wishes: Wishes) -> list[Knob]:
+    """The knobs to turn: those named, and those of which values are given."""
+    if wishes.knobs is None and not wishes.values:
+        return knobs_of(base)
+    return knobs_of(base, (*(wishes.knobs or ()), *wishes.values))
 
 
 def _take(out: Path, resume: bool, overwrite: bool) -> None:
@@ -223,8 +236,14 @@ def _written(case: Case, plan: Plan, rans: list[Ran], out: Path) -> Study:
         draw_front(pictures[name], f"{title}: {name}", items)
     table.write_csv(out / table.CSV, rans, judged, found, units)
     told = Told(
-        title=title, seeds=case.seeds, rans=rans, judged=judged, references=found, units=units, knobs=case.knobs,
+        title=title,
+        seeds=case.seeds,
+        rans=rans,
+        judged=judged,
+        references=found,
+        units=units,
+        knobs={knob: knob.own(case.base) for knob in case.knobs},
         pictures=pictures,
-    )  # fmt: skip
+    )
     (out / TEXT).write_text(text_of(told))
     return Study(rans=tuple(rans), judged=judged, references=found, units=units, folder=out)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TypeAlias
 
 from coupled.scene import Scene
@@ -25,39 +24,50 @@ def set_key(key: str, value: Value) -> str:
 
 
 def step(scene: Scene, factor: Value) -> Changes:
-    """The grains' step, or the structure's where it stands alone, times a factor."""
+    """The step times a factor, however it is chosen."""
     time = scene.time
-    if time.step == "auto":
-        return (set_key("time.safety", float(time.safety * factor)),)
-    return (set_key("time.step", float(time.step * factor)),)
+    if time.step != "auto":
+        return (set_key("time.refinement", (time.refinement or 1.0) / factor),)
+    if time.step_fraction is not None:
+        return (set_key("time.step_fraction", min(1.0, time.step_fraction * factor)),)
+    return (set_key("time.safety", min(1.0, time.safety * factor)),)
+
+
+def fraction(scene: Scene, value: Value) -> Changes:
+    """The step as a fraction of the sharp limit of grains and coupling."""
+    return ("time.step=auto", "time.safety=absent", "time.refinement=absent", set_key("time.step_fraction", value))
+
+
+def coarsening(scene: Scene, value: Value) -> Changes:
+    """Grains as many times as large; a given step grows with the root of their mass."""
+    key = set_key("grains.coarsening", value * (scene.grains.coarsening or 1.0))
+    return (key, *_longer(scene, value))
+
+
+def stiffness(scene: Scene, value: Value) -> Changes:
+    """Springs times a factor; a given step falls with its root."""
+    key = set_key("contact.stiffness_factor", value * (scene.contact.stiffness_factor or 1.0))
+    return (key, *_longer(scene, float(value) ** -0.5))
+
+
+def _longer(scene: Scene, factor: Value) -> Changes:
+    """A given step times a factor; one that is left to the model follows by itself."""
+    return () if scene.time.step == "auto" else step(scene, factor)
 
 
 def mesh(scene: Scene, factor: Value) -> Changes:
-    """Cells times a factor in both directions; glued grains keep their spacing as nearly as whole numbers allow."""
-    shape = scene.structure.shape
-    name, directions = ("tube", ("around", "layers")) if scene.structure.tube else ("beam", ("along", "across"))
-    cells = {key: max(1, round(getattr(shape, key) * factor)) for key in directions}
-    changes = tuple(set_key(f"structure.{name}.{key}", count) for key, count in cells.items())
-    interface = scene.interface
-    if interface is None or interface.per_facet is None:
-        return changes
-    return (*changes, *_spaced(scene, max(1, math.floor(interface.per_facet / factor + 0.5)), factor))
+    """Cells times a factor in both directions."""
+    return (set_key("structure.refinement", (scene.structure.refinement or 1.0) * factor),)
 
 
 def glued(scene: Scene, factor: Value) -> Changes:
-    """Glued grains per facet times a factor."""
-    per_facet = scene.interface.per_facet
-    return _spaced(scene, max(1, round(per_facet * factor)), 1.0)
-
-
-def _spaced(scene: Scene, per_facet: int, finer: float) -> Changes:
-    """Glued grains per facet, where facets are `finer` times as many; a diameter keeps its share of the spacing."""
+    """Glued grains per facet times a factor; a diameter that is given keeps its share of their spacing."""
     interface = scene.interface
+    per_facet = max(1, round(interface.per_facet * factor))
     changes = (set_key("interface.per_facet", per_facet),)
     if interface.diameter is None:
         return changes
-    spacing = interface.per_facet / (per_facet * finer)
-    return (*changes, set_key("interface.diameter", interface.diameter * spacing))
+    return (*changes, set_key("interface.diameter", interface.diameter * interface.per_facet / per_facet))
 
 
 def order(scene: Scene, value: Value) -> Changes:

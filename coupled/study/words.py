@@ -13,6 +13,7 @@ from coupled.study.knob import Knob
 from coupled.study.reference import EXACT, Reference
 from coupled.study.setting import Ran
 from coupled.study.table import percent
+from coupled.study.turns import Value
 
 LOADED = 0.1  # of the wall time that the processor did not work: told
 OPEN = ("not resolved", "one sample")
@@ -29,7 +30,7 @@ class Told:
     judged: Mapping[str, Sequence[Judged]]
     references: Mapping[str, Reference]
     units: Mapping[str, str]
-    knobs: Sequence[Knob]
+    knobs: Mapping[Knob, Value]
     pictures: Mapping[str, Path]
 
 
@@ -86,16 +87,16 @@ def _claim(item: Judged) -> str:
     return shown if item.verdict == "resolved" else f"{shown} ({item.verdict})"
 
 
-def _knobs(knobs: Sequence[Knob], items: Sequence[Judged]) -> list[str]:
+def _knobs(knobs: Mapping[Knob, Value], items: Sequence[Judged]) -> list[str]:
     """What a digit costs by each knob, the cheapest first."""
     base = [item for item in items if item.setting.role == "base"]
     lines: list[tuple[float, str]] = []
-    for knob in knobs:
+    for knob, scene_value in knobs.items():
         own = [item for item in items if item.setting.role == "knob" and item.setting.knobs[0][0] == knob.name]
         if not own or knob.speed_only or not base:
             continue
         found = price(knob.name, [*base, *own])
-        order = _order(knob, [*base, *own])
+        order = _order(knob, scene_value, base, own)
         lines.append(
             (found.seconds_per_decade, _knob_line(knob, found.coarse, found.fine, found.seconds_per_decade) + order)
         )
@@ -125,10 +126,12 @@ def _at(item: Judged) -> str:
     return f"{value} ({item.ran.wall_seconds:.2g} s)"
 
 
-def _order(knob: Knob, items: Sequence[Judged]) -> str:
-    if not knob.falls or any(item.verdict in OPEN for item in items):
+def _order(knob: Knob, scene_value: Value, base: Sequence[Judged], own: Sequence[Judged]) -> str:
+    if not knob.falls or any(item.verdict in OPEN for item in (*base, *own)):
         return ""
-    pairs = [(float(item.setting.knobs[0][1]) if item.setting.role == "knob" else 1.0, item.value) for item in items]
+    pairs = [(float(item.setting.knobs[0][1]), item.value) for item in own]
+    if scene_value:
+        pairs += [(float(scene_value), item.value) for item in base]
     order = observed_order(pairs)
     return "" if order is None else f"; order {order:.2f}"
 

@@ -46,7 +46,7 @@ def judged(settings):
 def told(settings, judged, tmp_path, **more):
     given = dict(
         title="a drop", seeds=(), rans=settings, judged=judged,
-        references={QUANTITY: RIGHT}, units=UNITS, knobs=[BY_NAME["step"], BY_NAME["mesh"]],
+        references={QUANTITY: RIGHT}, units=UNITS, knobs={BY_NAME["step"]: 1.0, BY_NAME["mesh"]: 1.0},
         pictures={QUANTITY: tmp_path / "front.png"},
     )  # fmt: skip
     return text_of(Told(**(given | more)))
