@@ -17,7 +17,7 @@ from coupled.bodies import body_of, interface_of, mesh_of, stable_ratio
 from coupled.errors import LeitoError
 from coupled.exchange.iterated import Iteration
 from coupled.interface.closed_ratio import ClosedRatio
-from coupled.interface.door import Interface, stiffness_ratio
+from coupled.interface.door import Interface, longest_window, stiffness_ratio
 from coupled.interface.glued import BODY, GluedGrains
 from coupled.laws import contact_law, damping_of, interface_spring
 from coupled.layout import box_walls, laid_out, shaking_of
@@ -197,9 +197,13 @@ def _stiffness_ratio(scene: Scene, model: Model, contact: dem.Contact | None, co
     ratio = stiffness_ratio(interface.operator, *spring, model.window, model.structure.acceleration_by)
     limit = scene.interface.largest_stiffness_ratio or stable_ratio(scene)
     if ratio > limit:
+        longest = longest_window(ratio, *spring, model.window, limit)
+        instead = "fewer interface.substeps, "
+        if scene.interface.exchange != "iterated":
+            instead += 'interface.exchange = "iterated", '
         raise LeitoError(
             f"stiffness ratio r = {ratio:.3g} of the coupling is above {limit:.4g}, where the exchange is "
-            f"unstable: take time.step at most {scene.time.step * limit / ratio:.2g} s, fewer "
-            "interface.substeps, or raise interface.largest_stiffness_ratio knowingly"
+            f"unstable: take time.step at most {0.95 * longest / model.substeps:.2g} s, {instead}"
+            "or raise interface.largest_stiffness_ratio knowingly"
         )
     return ratio

@@ -12,7 +12,7 @@ from structure.rigid.free import FreeRigid
 from structure.rigid.prescribed import PrescribedRigid
 from structure.schemes import GeneralizedAlpha, HilberHughesTaylor, Newmark, Scheme
 from structure.solvers.options import set_solver_options, solver_options, unused_solver_options
-from structure.theories.validity import departures
+from structure.theories.validity import beyond_meaning, departures
 
 __all__ = [
     "BodyForce",
@@ -38,6 +38,7 @@ __all__ = [
     "StructurePeaks",
     "Table",
     "agreed_force",
+    "beyond_meaning",
     "departures",
     "set_solver_options",
     "solver_options",

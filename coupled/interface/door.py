@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
@@ -102,6 +103,12 @@ def stiffness_ratio(
         if abs(growth - before) <= POWER_TOLERANCE * growth:
             break
     return (interval**2 * stiffness + 2.0 * interval * dashpot) * growth
+
+
+def longest_window(ratio: float, stiffness: float, dashpot: float, interval: float, limit: float) -> float:
+    """The H [s] at which `stiffness_ratio` is `limit`, when it is `ratio` at `interval` [s]."""
+    by_mode = ratio / (interval**2 * stiffness + 2.0 * interval * dashpot)
+    return (math.sqrt(dashpot**2 + stiffness * limit / by_mode) - dashpot) / stiffness
 
 
 def shares(first: NDArray[np.int64], second: NDArray[np.int64], fraction: Floats, nodes: int) -> csr_matrix:

@@ -9,13 +9,13 @@ from coupled.bodies import stable_ratio
 from coupled.build import WARNED_SHARE, Built
 from coupled.laws import interface_spring
 from coupled.loads import unresolved_schedules
+from coupled.report.locking import locking
 from coupled.scene import Scene
 from coupled.step import StepLimits, limits_of
-from structure import ElasticStructure, departures, unused_solver_options
+from structure import ElasticStructure, beyond_meaning, departures, unused_solver_options
 
 ENOUGH_DAMPING = 0.1  # of critical: with it no sub-cycled exchange of the map grows below its limit
 FEW_UNKNOWNS = 10_000  # up to here the lowest mode takes a fraction of a second
-INCOMPRESSIBLE = 0.45  # from here on stress at the nodes of standard cells, order 2 as well, is off by 20 % and more
 
 
 def before(built: Built, limits: StepLimits | None = None) -> list[str]:
@@ -48,7 +48,8 @@ def before(built: Built, limits: StepLimits | None = None) -> list[str]:
         said.append(f"no solver of this scene knows the PETSc option {', '.join(unused)}: look at its spelling")
     if scene.structure is not None:
         said += unresolved_schedules(scene.structure.loads, built.model.window)
-    return said + _resonance(built) + _locking(scene)
+        said += _braked(built) + _walls_alone(scene)
+    return said + _resonance(built) + locking(scene)
 
 
 def _resonance(built: Built) -> list[str]:
@@ -70,6 +71,24 @@ def _resonance(built: Built) -> list[str]:
     ]
 
 
+def _braked(built: Built) -> list[str]:
+    """A sentence on Rayleigh's mass factor, where it stops every motion within a step."""
+    table = built.scene.structure.rayleigh
+    if table is None or table.mass_factor * built.model.window <= 2.0:
+        return []
+    return [
+        f"structure.rayleigh.mass_factor = {table.mass_factor:g} 1/s brakes every motion, also that of the whole body, "
+        f"within a step of {built.model.window:.3g} s: what moves then follows its loads at once"
+    ]
+
+
+def _walls_alone(scene: Scene) -> list[str]:
+    """A sentence on walls that have no grain to hold."""
+    if scene.grains is not None or scene.box is None or not scene.box.walls:
+        return []
+    return ["box.walls hold free grains, and there are none: the structure goes through them"]
+
+
 def _overdamped(body: ElasticStructure) -> str:
     """A sentence on Rayleigh's stiffness factor, with the lowest mode where that is found at once."""
     limit = body.damping.overdamped_above
@@ -83,33 +102,20 @@ def _overdamped(body: ElasticStructure) -> str:
     return f"{said}; the lowest of this structure is at {lowest:.4g} Hz"
 
 
-def _locking(scene: Scene) -> list[str]:
-    """A sentence on cells that are too stiff for what they are used for; numbers from docs/validation/elements.md."""
-    structure = scene.structure
-    if structure is None or structure.element != "standard":
-        return []
-    if structure.poissons_ratio > INCOMPRESSIBLE:
-        return [
-            f"structure.poissons_ratio = {structure.poissons_ratio:g} is near 0.5, where standard cells lock and show "
-            'no stress to rely on: take quadrilaterals of order 1 with structure.element = "enhanced"'
-        ]
-    if structure.shape.order == 1:
-        enhanced = (
-            "" if structure.theory == "large_strain" else 'quadrilaterals with structure.element = "enhanced" or '
-        )
-        return [
-            "standard cells of order 1 are too stiff in bending, by 9 to 21 % in the frequencies of the source's "
-            f"meshes and more as triangles: take {enhanced}order = 2"
-        ]
-    return []
-
-
 def beyond_theory(built: Built, numbers: Mapping[str, float]) -> dict[str, str]:
     """Sentences, by quantity, on numbers of an observation that leave the theory in use."""
     structure = built.scene.structure
     if structure is None or structure.theory is None:
         return {}
     return departures(structure.theory, numbers)
+
+
+def beyond_meaning_of_theory(built: Built, numbers: Mapping[str, float]) -> str | None:
+    """A sentence on an observation so far outside the theory in use that going on means nothing."""
+    structure = built.scene.structure
+    if structure is None or structure.theory is None:
+        return None
+    return beyond_meaning(structure.theory, numbers)
 
 
 def beyond_exchange(built: Built, numbers: Mapping[str, float]) -> dict[str, str]:

@@ -13,11 +13,16 @@ Floats = NDArray[np.float64]
 THROUGH_WALL = 0.5  # of the smallest grain's radius that a node may lie behind a wall: walls hold grains alone
 
 
-def body_sign(model: Model, overturned: int | None) -> Sign | None:
-    """What is wrong with the structure, if anything; `overturned` is a cell inside out. On rank 0."""
+def body_sign(model: Model, overturned: int | None, beyond: str | None) -> Sign | None:
+    """What is wrong with the structure, if anything. On rank 0.
+
+    `overturned` is a cell inside out, `beyond` a sentence on a state far outside the theory.
+    """
     if model.structure is None:
         return None
     found = _inside_out(model, overturned)
+    if found is None and beyond is not None:
+        found = Sign(beyond, "deformation")
     if found is not None or model.interface is None or not model.particles.grains.n_free:
         return found
     return _too_fast(model) or _through_wall(model) or _swallows(model)

@@ -12,7 +12,8 @@ from coupled.step import StepLimits, limits_of
 SHARE_OF_LIMIT = 0.8  # of the limit of the contacts, to be on the safe side of those to come
 WANTED_OVERLAP = 0.1  # of the smaller radius
 OTHERS = {
-    "deformation": "give the structure smaller loads or gentler impacts, or a larger youngs_modulus",
+    "deformation": "give the structure smaller loads or gentler impacts, a larger youngs_modulus, or a theory that "
+    "goes farther",
     "wall": "keep the structure inside, by [[rows]] of fixed grains along the wall, other loads or a shorter duration, "
     "or leave the wall out of box.walls",
     "inside": "start with the structure clear of the grains; with glued grains leave no gaps between them and no "

@@ -166,7 +166,8 @@ class Run:
         step, started = self.model.steps_done, time.perf_counter()
         if self.events.writes(step):
             seen = observe(self.model, self.record.start)
-            guard.check(Glance(seen.balance, seen.look, overturned_cell(self.model)))
+            beyond = cautions.beyond_meaning_of_theory(self.built, seen.numbers)
+            guard.check(Glance(seen.balance, seen.look, overturned_cell(self.model), beyond))
             self.record.count(seen)
             self._end_at_rest(seen)
             self._write_due(seen)

@@ -32,11 +32,15 @@ class Unstable(LeitoError):
 
 @dataclass(frozen=True)
 class Glance:
-    """What a watchdog looks at: the ledger, the contacts and a cell that is inside out at one moment."""
+    """What a watchdog looks at: the ledger, the contacts and a cell that is inside out at one moment.
+
+    `beyond` says that an observation is far outside the theory of the structure; looks alone do not tell.
+    """
 
     balance: Balance
     look: ContactLook | None
     overturned: int | None
+    beyond: str | None = None
 
 
 def glance(model: Model, start: dict[str, float]) -> Glance:
@@ -54,7 +58,7 @@ def first_sign(model: Model, seen: Glance, since: Glance) -> Sign | None:
     """What is wrong with a state, if anything; `since` is the last look that found nothing. On rank 0."""
     return (
         _not_finite(model, seen)
-        or body_sign(model, seen.overturned)
+        or body_sign(model, seen.overturned, seen.beyond)
         or _too_deep(model, seen)
         or _too_fast(model, seen)
         or _energy_made(model, seen, since)
