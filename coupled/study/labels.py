@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from matplotlib.axes import Axes
+from coupled.report.drawing import Axes
 
 SIZE = 6.5  # points
 GAP = 5.0  # points between a marker's middle and its words

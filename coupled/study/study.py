@@ -102,6 +102,10 @@ class Study:
         return table.without_result(self.rans)
 
 
+def _print(sentence: str) -> None:
+    print(sentence, flush=True)
+
+
 def run_study(
     scene: str | Path,
     wishes: Wishes,
@@ -110,7 +114,7 @@ def run_study(
     resume: bool = False,
     overwrite: bool = False,
     progress: bool = True,
-    say: Callable[[str], None] = print,
+    say: Callable[[str], None] = _print,
 ) -> Study:
     """Run a scene over its knobs and write study.csv, study.md and a picture per quantity.
 
