@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 
 from coupled.campaign import crews
-from coupled.campaign.folders import done, is_done, require_own, share_done
+from coupled.campaign.folders import begun, done, is_done, require_own, share_done
 from coupled.campaign.progress import CampaignProgress
 from coupled.campaign.task import Outcome, Task
 from coupled.campaign.worker import WISH
@@ -20,7 +20,12 @@ PAUSE = 0.5  # seconds between two looks at the runs
 
 
 def run_all(
-    tasks: Sequence[Task], *, workers: int | None = None, progress: bool = True, overwrite: bool = False
+    tasks: Sequence[Task],
+    *,
+    workers: int | None = None,
+    progress: bool = True,
+    resume: bool = True,
+    overwrite: bool = False,
 ) -> list[Outcome]:
     """Make runs side by side and return what came of each, in their order.
 
@@ -36,18 +41,21 @@ def run_all(
         Runs at a time; by default the cores over the largest number of threads of a run. Under mpirun it is
         the number of ranks less one.
     progress : bool
-        A bar for the whole on a terminal; runs that fail are named.
+        A bar for the whole, on a terminal.
+    resume : bool
+        Reuse what the folders hold; otherwise one that holds a run is refused.
     overwrite : bool
         Make all anew, whatever their folders hold.
 
     Raises
     ------
     LeitoError
-        If two tasks have one folder, or one holds the run of another scene, before anything runs.
+        If two tasks have one folder, or one holds the run of another scene or, without `resume`, any; before
+        anything runs.
     """
     if ranks() > 1:
-        return _on_ranks(tasks, progress, overwrite)
-    ended = _prepared(tasks, overwrite)
+        return _on_ranks(tasks, progress, resume, overwrite)
+    ended = _prepared(tasks, resume, overwrite)
     left = [task for task in tasks if task.folder not in ended]
     threads = max((task.threads for task in left), default=1)
     size = min(workers or max(1, (os.cpu_count() or 1) // threads), max(1, len(left)))
@@ -55,13 +63,13 @@ def run_all(
         return _Campaign(tasks, ended, crew, stop, overwrite).go(progress)
 
 
-def _on_ranks(tasks: Sequence[Task], progress: bool, overwrite: bool) -> list[Outcome]:
+def _on_ranks(tasks: Sequence[Task], progress: bool, resume: bool, overwrite: bool) -> list[Outcome]:
     from mpi4py import MPI
 
     from coupled.running.ranks import on_root
 
     comm = MPI.COMM_WORLD
-    ended = on_root(comm, lambda: _prepared(tasks, overwrite))
+    ended = on_root(comm, lambda: _prepared(tasks, resume, overwrite))
     outcomes: list[Outcome] = []
     with crews.ranks() as crew:
         if crew is not None:
@@ -69,7 +77,7 @@ def _on_ranks(tasks: Sequence[Task], progress: bool, overwrite: bool) -> list[Ou
     return comm.bcast(outcomes, root=0)
 
 
-def _prepared(tasks: Sequence[Task], overwrite: bool) -> dict[object, Outcome]:
+def _prepared(tasks: Sequence[Task], resume: bool, overwrite: bool) -> dict[object, Outcome]:
     """The outcomes, by folder, of what is finished already; refuses what would mix runs."""
     folders = [task.folder for task in tasks]
     for folder in folders:
@@ -78,6 +86,10 @@ def _prepared(tasks: Sequence[Task], overwrite: bool) -> dict[object, Outcome]:
     if overwrite:
         return {}
     for task in tasks:
+        if begun(task) and not resume:
+            raise LeitoError(
+                f"{task.folder} holds a run already; go on with --resume, or start anew with --overwrite or --out"
+            )
         require_own(task)
     return {task.folder: done(task) for task in tasks if is_done(task)}
 

@@ -134,5 +134,7 @@ def ranks() -> Iterator[Ranks | None]:
     from mpi4py import MPI
     from mpi4py.futures import MPICommExecutor
 
+    import coupled.running.run  # noqa: F401  PETSc begins on all ranks together, or waits for them for ever
+
     with WISH, MPICommExecutor(MPI.COMM_WORLD) as executor:
         yield None if executor is None else Ranks(executor, MPI.COMM_WORLD.size - 1)

@@ -11,9 +11,11 @@ from coupled.output.folder import SCENE, SUMMARY, finished, require_same_scene
 from coupled.scene import Scene
 from coupled.scene.knobs import plain
 
+ASKED = ("quantities", "bed.quantities")  # they are read out of a finished run, and do not shape it
+
 
 def require_own(task: Task) -> None:
-    """Refuse a folder that holds the run of another scene; every key counts.
+    """Refuse a folder that holds the run of another scene; every key that shapes it counts.
 
     Raises
     ------
@@ -21,7 +23,7 @@ def require_own(task: Task) -> None:
         Naming the key.
     """
     if (task.folder / SCENE).exists():
-        require_same_scene(task.folder, _numbered(task.scene))
+        require_same_scene(task.folder, _numbered(task.scene), free=ASKED)
 
 
 def begun(task: Task) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from types import TracebackType
 
@@ -13,7 +12,7 @@ from coupled.campaign.task import Outcome
 
 
 class CampaignProgress:
-    """A bar with the time left on a terminal; a line for each run that failed elsewhere; nothing if not wanted.
+    """A bar with the time left on a terminal, with a line above it for each run that failed; nothing elsewhere.
 
     The time left is estimated from the share of all simulated time that was done since the beginning.
 
@@ -70,10 +69,6 @@ class CampaignProgress:
 
     def tell(self, outcome: Outcome) -> None:
         """Name a run that failed."""
-        if not self._wanted or outcome.status != "failed":
-            return
-        sentence = f"leito: {outcome.task.name}: {outcome.message}"
-        if self._bar is not None:
+        if self._bar is not None and outcome.status == "failed":
+            sentence = f"leito: {outcome.task.name}: {outcome.message}"
             self._bar.console.print(sentence, markup=False, highlight=False)
-        else:
-            print(sentence, file=sys.stderr, flush=True)

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from coupled.cli import films, measures, results, runs, scenes, studies
+from coupled.cli import ensembles, films, measures, results, runs, scenes, studies
 from coupled.cli.speech import say
 from coupled.errors import Interrupted, is_sentence
 from coupled.running.launch import ranks
@@ -44,6 +44,7 @@ def _options(
 # The order is that of the help.
 app.command("run")(runs.run)
 app.command("check")(runs.check)
+app.command("ensemble")(ensembles.ensemble)
 app.command("list")(scenes.list_scenes)
 app.command("new")(scenes.new)
 app.command("study")(studies.study)

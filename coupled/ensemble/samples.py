@@ -1,0 +1,94 @@
+"""The samples of an ensemble: every combination of the grid with every seed, checked before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from coupled.campaign import Task
+from coupled.ensemble.grid import Combination, grid
+from coupled.errors import LeitoError
+from coupled.scene import Grains, Scene, load_scene
+
+SEED = "grains.seed"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sample:
+    """One run of an ensemble."""
+
+    combination: Combination
+    seed: int | None
+    task: Task
+
+
+def samples_of(
+    scene: str | Path,
+    count: int,
+    *,
+    vary: Sequence[str] = (),
+    overrides: Sequence[str] = (),
+    out: Path,
+    threads: int = 1,
+    shared: Path | None = None,
+) -> list[Sample]:
+    """Every combination with the seeds ``first .. first + count - 1``, first being the scene's own.
+
+    The seed is that of the grains, or of the bed that settles them. Folders are
+    ``out/<combination>/seed_<k>``, without a combination ``out/seed_<k>``; of a scene in which nothing is random
+    ``sample``.
+
+    Raises
+    ------
+    LeitoError
+        If one of the scenes is refused, or several seeds are asked of one in which nothing is random.
+    """
+    if count < 1:
+        raise LeitoError(f"--samples {count} must be at least 1.")
+    found = []
+    for combination in grid(vary, overrides):
+        sets = [*overrides, *combination.overrides]
+        first = load_scene(scene, sets)
+        place = out / combination.label if combination.values else out
+        if not _is_random(first):
+            found.append((combination, None, first, place / "sample"))
+            if count > 1:
+                raise LeitoError(_nothing_random(scene, count))
+            continue
+        key = _seed_key(first)
+        if any(key == varied for varied, _ in combination.values):
+            raise LeitoError(f"--vary {key}: the seeds are varied by --samples; --set {key}=1 chooses the first.")
+        for seed in range(first.first_grains.seed, first.first_grains.seed + count):
+            found.append((combination, seed, load_scene(scene, [*sets, f"{key}={seed}"]), place / f"seed_{seed}"))
+    return [
+        Sample(
+            combination=combination,
+            seed=seed,
+            task=Task(name=str(folder.relative_to(out)), scene=loaded, folder=folder, threads=threads, shared=shared),
+        )
+        for combination, seed, loaded, folder in found
+    ]
+
+
+def _seed_key(scene: Scene) -> str:
+    """The key of the seed, inside the beds on which the grains stand."""
+    depth = 0
+    while not isinstance(scene.grains, Grains):
+        scene, depth = scene.bed, depth + 1
+    return "bed." * depth + SEED
+
+
+def _is_random(scene: Scene) -> bool:
+    """Whether the seed changes anything: the order of the sizes, or the jitter."""
+    grains = scene.first_grains
+    if grains is None or grains.layout != "lattice":
+        return False
+    return grains.jitter > 0.0 or len({size.radius for size in grains.sizes}) > 1
+
+
+def _nothing_random(scene: str | Path, count: int) -> str:
+    return (
+        f"--samples {count}: nothing in {scene} is random, all samples would be the same; take --samples 1, or grains "
+        "on a lattice with a jitter or several sizes."
+    )
