@@ -64,10 +64,13 @@ def _last_time(path: Path) -> float:
 
 
 def _numbered(scene: Scene) -> Scene:
-    """The scene with numbers in place of factors and where its step is left to the model, as a run writes it."""
+    """The scene with numbers in place of factors, "auto" steps and periods in steps, as a run writes it."""
     scene = plain(scene)
-    steps = [scene.time.step, None if scene.bed is None else scene.bed.time.step]
-    if "auto" not in steps:
+    chain = [scene]
+    while (bed := chain[-1].bed) is not None:
+        chain.append(bed)
+    in_steps = any(one.shaking is not None and one.shaking.period_steps is not None for one in chain)
+    if not in_steps and all(one.time.step != "auto" for one in chain):
         return scene
     from coupled.step import with_step  # loads FEniCSx
 

@@ -9,9 +9,8 @@ from pathlib import Path
 from coupled.campaign import Task
 from coupled.ensemble.grid import Combination, grid
 from coupled.errors import LeitoError
-from coupled.scene import Grains, Scene, load_scene
-
-SEED = "grains.seed"
+from coupled.scene import load_scene
+from coupled.scene.chance import seed_key
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,12 +50,12 @@ def samples_of(
         sets = [*overrides, *combination.overrides]
         first = load_scene(scene, sets)
         place = out / combination.label if combination.values else out
-        if not _is_random(first):
+        key = seed_key(first)
+        if key is None:
             found.append((combination, None, first, place / "sample"))
             if count > 1:
                 raise LeitoError(_nothing_random(scene, count))
             continue
-        key = _seed_key(first)
         if any(key == varied for varied, _ in combination.values):
             raise LeitoError(f"--vary {key}: the seeds are varied by --samples; --set {key}=1 chooses the first.")
         for seed in range(first.first_grains.seed, first.first_grains.seed + count):
@@ -71,24 +70,8 @@ def samples_of(
     ]
 
 
-def _seed_key(scene: Scene) -> str:
-    """The key of the seed, inside the beds on which the grains stand."""
-    depth = 0
-    while not isinstance(scene.grains, Grains):
-        scene, depth = scene.bed, depth + 1
-    return "bed." * depth + SEED
-
-
-def _is_random(scene: Scene) -> bool:
-    """Whether the seed changes anything: the order of the sizes, or the jitter."""
-    grains = scene.first_grains
-    if grains is None or grains.layout != "lattice":
-        return False
-    return grains.jitter > 0.0 or len({size.radius for size in grains.sizes}) > 1
-
-
 def _nothing_random(scene: str | Path, count: int) -> str:
     return (
         f"--samples {count}: nothing in {scene} is random, all samples would be the same; take --samples 1, or grains "
-        "on a lattice with a jitter or several sizes."
+        "on a lattice with a jitter, a spread or several sizes."
     )

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from coupled.errors import LeitoError
-from coupled.scene import Grains, Scene
+from coupled.scene import Scene, chance
 
 FEW = 20  # grains: with fewer, a lattice tells more of its order than of chance
 SAMPLES = 5  # Student's t at 95 % is then 2.8 standard errors
 
 
 def seed_key(scene: Scene) -> str | None:
-    """Key of the seed that lays a scene's grains out, in its bed if it stands on one; None without chance."""
-    prefix, here = "", scene
-    while here.bed is not None:
-        prefix, here = f"{prefix}bed.", here.bed
-    grains = here.grains
-    if not isinstance(grains, Grains) or grains.layout != "lattice" or grains.count < FEW:
-        return None
-    return f"{prefix}grains.seed"
+    """Key of the seed of a scene's grains, or of its bed's; None without chance, and with too few grains for it."""
+    key = chance.seed_key(scene)
+    return None if key is None or scene.first_grains.count < FEW else key
 
 
 def seeds_of(scene: Scene, samples: int | None) -> tuple[int, ...]:

@@ -85,6 +85,16 @@ def test_finished_runs_are_reused_and_begun_ones_taken_up(grains: Path, tmp_path
     assert (first.folder / "summary.json").stat().st_mtime_ns > before
 
 
+def test_a_run_whose_numbers_are_left_to_the_model_is_known_again(grains: Path, tmp_path: Path) -> None:
+    """The folder has numbers where the scene has an "auto" step and factors."""
+    left = task(grains, tmp_path / "left", "time.step=auto", "grains.coarsening=2.0", "contact.stiffness_factor=0.5")
+    (done,) = run_all([left], progress=False)
+    (again,) = run_all([left], progress=False)
+    assert (done.status, again.status) == ("done", "done") and again.wall_seconds == done.wall_seconds
+    with pytest.raises(LeitoError, match="contact.normal_damping = .* differs"):
+        run_all([task(grains, tmp_path / "left", "time.step=auto", "contact.stiffness_factor=0.5")], progress=False)
+
+
 def test_a_folder_of_another_scene_and_one_for_two_are_refused_before_anything_runs(
     grains: Path, tmp_path: Path
 ) -> None:
