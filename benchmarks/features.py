@@ -97,6 +97,7 @@ def cases() -> list[Case]:
             "global damping", FULL, lambda: system(beds.FULL, damping=GlobalDamping(translational=0.1, rotational=0.1))
         ),
         Case("velocity Verlet", FULL, lambda: system(beds.FULL, scheme="velocity_verlet")),
+        Case("single precision", FULL, lambda: system(beds.FULL, precision="float32")),
         Case("ledger", FULL, lambda: system(beds.FULL, ledger=True)),
         Case("180 glued grains", FULL, lambda: _pressed("glued")),
         Case("30 facets", FULL, lambda: _pressed("facets")),

@@ -140,6 +140,7 @@ def _particles(
         "shaking": shaking_of(scene),
         "period": (None, None) if scene.box is None else scene.box.period,
         "scheme": scene.time.integrator,
+        "precision": "float64" if scene.grains is None else scene.grains.precision,
         "facets": facets,
         "gravity": scene.gravity,
         "threads": threads,

@@ -9,10 +9,10 @@ from particles.contact import Contact
 NAMES = ("spring", "moment", "dash_n", "dash_t", "dash_r")
 
 
-def fresh_history(contact: Contact, slots: int, *, ledger: bool) -> dict[str, np.ndarray]:
+def fresh_history(contact: Contact, slots: int, *, ledger: bool, precision: str = "float64") -> dict[str, np.ndarray]:
     """Zeros for `slots` pairs, by name: springs as the law has them, dashpot forces for the ledger."""
     kept = (contact.spins, contact.rolls, ledger, ledger, ledger and contact.damps_rolling)
-    return {name: np.zeros(slots if wanted else 0) for name, wanted in zip(NAMES, kept, strict=True)}
+    return {name: np.zeros(slots if wanted else 0, precision) for name, wanted in zip(NAMES, kept, strict=True)}
 
 
 def history_of(listed: Any) -> tuple[np.ndarray, ...]:

@@ -58,7 +58,9 @@ class ContactList:
     period : (2,) of float or None
         After which x and y repeat [m].
     facets : FacetContacts, optional
-        Listed together with the grains.
+        Listed together with the grains; their own histories are kept in "float64".
+    precision : str
+        Of the histories, "float64" or "float32".
     """
 
     def __init__(
@@ -69,9 +71,10 @@ class ContactList:
         ledger: bool,
         period: Period = (None, None),
         facets: FacetContacts | None = None,
+        precision: str = "float64",
     ) -> None:
         self.contact = contact
-        self.ledger = ledger
+        self.ledger, self.precision = ledger, precision
         self.period, self.facets = period, facets
         self.skin = 0.0
         none = np.zeros(0, np.uint32)
@@ -161,8 +164,8 @@ class ContactList:
                 arrays["start"] = np.append(arrays["start"], np.full(more, arrays["start"][-1]))
             slots = len(arrays["partner" if group == "pairs" else "grain"])
             for name, fresh in self._memory(slots).items():
-                if len(arrays[name]) != len(fresh):
-                    arrays[name] = fresh
+                fits = len(arrays[name]) == len(fresh)
+                arrays[name] = arrays[name].astype(self.precision, copy=False) if fits else fresh
             setattr(self, group, type(own)(**arrays))
 
     def _rebuild_walls(self, grains: Grains, old_of: np.ndarray) -> None:
@@ -197,7 +200,7 @@ class ContactList:
         return Grid(x_min, y_min, size, int(width / size) + 1, int(height / size) + 1)
 
     def _memory(self, slots: int) -> dict[str, np.ndarray]:
-        return fresh_history(self.contact, slots, ledger=self.ledger)
+        return fresh_history(self.contact, slots, ledger=self.ledger, precision=self.precision)
 
     def _pair_arrays(self, start: np.ndarray, owner: np.ndarray, partner: np.ndarray, blocks: np.ndarray) -> PairArrays:
         crossing_start, *incoming = cells.list_crossings(blocks, start, partner)

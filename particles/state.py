@@ -12,6 +12,8 @@ from particles.errors import ParticleError, require
 Floats = NDArray[np.float64]
 FREE = -1
 LEADS = ("lead_x", "lead_y", "lead_spin")
+SINGLE = ("fx", "fy", "torque", "mass", "inertia", "inverse_mass", "inverse_inertia", "roll_compliance")
+PRECISIONS = ("float64", "float32")
 WHOLE_NUMBERS = ("n_free", "body", "number", "material")
 
 
@@ -141,6 +143,15 @@ class Grains:
                 setattr(self, name, np.zeros(len(self)))
             elif not wanted:
                 setattr(self, name, None)
+
+    def keep_in(self, precision: str) -> None:
+        """Have what may be stored in single precision, `SINGLE`, in "float64" or in "float32".
+
+        Positions, velocities and radii are none of it: a step adds too little to the first two, and overlaps are small
+        differences of the others.
+        """
+        for name in SINGLE:
+            setattr(self, name, getattr(self, name).astype(precision, copy=False))
 
     def _check(self) -> None:
         for name in ("x", "y", "vx", "vy", "omega", "radius", "mass"):

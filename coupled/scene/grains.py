@@ -14,6 +14,8 @@ Wall = Literal["left", "right", "floor", "lid"]
 Axis = Literal["x", "y"]
 USUAL_WALLS: tuple[Wall, ...] = ("left", "right", "floor")
 ACROSS: dict[Axis, tuple[Wall, ...]] = {"x": ("left", "right"), "y": ("floor", "lid")}
+Precision = Literal["float64", "float32"]
+PRECISION = Field("float64", description="stored forces, masses and contact memories; float32 saves memory and no time")
 COARSENING = Field(
     None,
     description="factor on all radii [-], with so many fewer grains that a bed fills its box as before; dashpots, the "
@@ -74,6 +76,7 @@ class Grains(Table):
     jitter: Fraction = Field(0.0, description="random shift as a fraction of the free gap [-]")
     layout: Literal["lattice", "list"] = Field("lattice", description="how grains start")
     coarsening: Positive | None = COARSENING
+    precision: Precision = PRECISION
     positions: tuple[Annotated[tuple[Number, ...], Field(min_length=2, max_length=5)], ...] = Field(
         (), description="rows [x, y, vx, vy, omega] in m, m/s and rad/s, in the order of sizes"
     )
@@ -115,6 +118,7 @@ class SettledGrains(Table):
 
     bed: Annotated[str, Field(min_length=1)] = Field(description="name or path of the scene that settles the grains")
     coarsening: Positive | None = COARSENING
+    precision: Precision = PRECISION
 
 
 def _layout_of(data: Any) -> str:

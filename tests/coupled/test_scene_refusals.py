@@ -66,6 +66,7 @@ BAD: dict[str, Case] = {
         "grains.spacing",
         ("at least 1",),
     ),
+    "precision that is none": (GRAINS, {"grains.precision": "float16"}, "grains.precision", ("'float64' or 'float32'",)),
     "unknown wall": (GRAINS, {"box.walls": ["roof"]}, "box.walls.0", ("'lid'",)),
     "wall named twice": (GRAINS, {"box.walls": ["floor", "floor"]}, "box.walls", ("twice",)),
     "step above the limit": (
