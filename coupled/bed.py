@@ -11,7 +11,7 @@ from coupled.scene import Scene, dump_scene
 from particles.kernels.layout import GrainArrays, PairArrays, WallArrays
 
 BEDS = "beds"
-ASKED = frozenset({"quantities"})  # of a scene, which do not shape a bed
+ASKED = frozenset({"quantities", "preset"})  # of a scene, which do not shape a bed
 
 
 def bed_folder(scene: Scene, runs: Path) -> Path:

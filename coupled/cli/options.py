@@ -14,6 +14,10 @@ SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Override one key, e.g. time.duration=1.0."),
 ]
+AccuracyOption = Annotated[
+    str | None,
+    typer.Option(metavar="PRESET", help="draft, standard or reference, instead of what the scene asks for."),
+]
 PetscOption = Annotated[
     str | None,
     typer.Option(

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from coupled.cli.options import (
+    AccuracyOption,
     OutOption,
     OverwriteOption,
     PetscOption,
@@ -26,6 +27,7 @@ def run(
     resume: ResumeOption = False,
     overwrite: OverwriteOption = False,
     overrides: SetOption = None,
+    accuracy: AccuracyOption = None,
     threads: Annotated[int | None, typer.Option(min=1, help="Threads for the grains; all cores by default.")] = None,
     progress: Annotated[bool, typer.Option(help="Show a progress bar.")] = True,
     petsc: PetscOption = None,
@@ -34,7 +36,7 @@ def run(
     refuse_both(resume, overwrite)
     from coupled.scene import load_scene
 
-    loaded = load_scene(scene, overrides or ())
+    loaded = load_scene(scene, overrides or (), accuracy=accuracy)
     set_petsc(petsc)
     from coupled.running.run import run_scene
 
@@ -56,13 +58,14 @@ def _default_folder(scene: str, folder: str | None) -> Path:
 def check(
     scene: SceneArgument,
     overrides: SetOption = None,
+    accuracy: AccuracyOption = None,
     petsc: PetscOption = None,
     measure: Annotated[bool, typer.Option("--measure", help="Take features out one by one and compare times.")] = False,
 ) -> None:
     """Validate a scene, say what it models, also without need, and what a run would cost."""
     from coupled.scene import load_scene
 
-    loaded = load_scene(scene, overrides or ())
+    loaded = load_scene(scene, overrides or (), accuracy=accuracy)
     set_petsc(petsc)
     from coupled.report.check import check_scene
 

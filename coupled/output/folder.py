@@ -31,6 +31,8 @@ FREE_TO_CHANGE = (
     "title",
     "quantities",
     "bed.quantities",
+    "preset.gives",
+    "preset.by_hand",
 )
 
 
@@ -124,7 +126,7 @@ def require_same_scene(path: Path, scene: Scene, *, free: tuple[str, ...] = ()) 
     except SceneError as error:
         raise LeitoError(f"{path} holds no {SCENE} of this version ({error}); start anew with --overwrite") from None
     new = _flat(tomllib.loads(dump_scene(scene)))
-    for key in sorted(old.keys() | new.keys()):
+    for key in sorted(old.keys() | new.keys(), key=lambda key: (key != "preset.name", key)):
         if old.get(key) != new.get(key) and not key.startswith(free):
             raise LeitoError(
                 f"{key} = {new.get(key)} differs from {old.get(key)} of the run in {path}; "

@@ -19,6 +19,7 @@ from coupled.report.contact import contact_rows
 from coupled.report.need_rows import need_rows
 from coupled.report.needs import without_need
 from coupled.report.paired import measured_shares
+from coupled.report.preset import preset_rows
 from coupled.report.shares import Trial
 from coupled.scene import Scene, SettledGrains, Time
 from coupled.step import StepLimits, limits_of, with_step
@@ -48,7 +49,7 @@ def check_scene(scene: Scene, *, measure: bool = False) -> list[Row]:
     tried = scene if settled is not None else on_lattice(scene)
     built = build(tried, bed=settled, threads=threads)
     needless = without_need(asked, built)  # before the trial moves anything
-    rows = [("scene", "title", scene.title), *_grain_rows(built)]
+    rows = [("scene", "title", scene.title), *preset_rows(scene), *_grain_rows(built)]
     limits = limits_of(built.model)
     if limits is not None:
         rows += _step_rows(limits, asked.time)
@@ -87,10 +88,10 @@ def _grain_rows(built: Built) -> list[Row]:
 def _step_rows(limits: StepLimits, asked: Time) -> list[Row]:
     """The step in use, and its share of the source's bound and of the limits of any packing and of this one."""
     by = ""
-    if asked.step == "auto":
+    if asked.step_fraction is not None:
+        by = f" (auto: {asked.step_fraction:g} of the limit of a settled sample, or of the coupling)"
+    elif asked.step == "auto":
         by = f" (auto: {asked.safety:g} of the limit of any packing)"
-        if asked.step_fraction is not None:
-            by = f" (auto: {asked.step_fraction:g} of the limit of a settled sample, or of the coupling)"
     network = limits.network
     present = "no contacts yet"
     if network.contacts:

@@ -6,7 +6,8 @@ import sys
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from coupled.build import Built, stable_ratio
+from coupled.bodies import stable_ratio
+from coupled.build import Built
 from coupled.laws import interface_spring
 from coupled.report import modelled as m
 from coupled.report.shares import FRAMES

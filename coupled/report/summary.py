@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +11,10 @@ from numpy.typing import NDArray
 from coupled.bodies import stable_ratio
 from coupled.build import Built
 from coupled.report.contact import contact_numbers
+from coupled.report.preset import preset_sentences
 from coupled.report.quantities import quantity_lines
 from coupled.running.observe import Observation
-from coupled.scene.quantities import Quantity
+from coupled.scene import Scene
 from coupled.step import limits_of
 
 
@@ -79,6 +79,8 @@ def summarise(
             "exchange_farthest": model.iterated.farthest,
         }
     summary |= contact_numbers(built.scene)
+    if built.scene.preset is not None:
+        summary["accuracy"] = built.scene.preset.model_dump()
     if model.structure is not None:
         summary |= {
             "kind": built.scene.structure.kind,
@@ -98,7 +100,7 @@ def summarise(
 ADDED = ("network_dt_ratio", "interface_work", "moment_dropped_share", "stiffness_ratio_max")
 
 
-def tell(summary: dict[str, Any], pictures: list[Path], folder: Path, quantities: Sequence[Quantity] = ()) -> str:
+def tell(summary: dict[str, Any], pictures: list[Path], folder: Path, scene: Scene | None = None) -> str:
     """The lines printed at the end of a run, also of one that an earlier version made, and its quantities."""
     summary = dict.fromkeys(ADDED, 0.0) | summary
     wall, in_contact = summary["wall_seconds"], summary["network_dt_ratio"] > 0.0
@@ -145,7 +147,9 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path, quantities
             f"  iterations per step      {summary['exchange_iterations']:12.3g}       of the exchange; {unsettled} "
             "steps not settled" + (f", by {farthest:.1g} of the motion at most" if unsettled else "")
         )
-    lines += quantity_lines(quantities, summary.get("quantities", {}))
+    if scene is not None:
+        lines += quantity_lines(scene.quantities, summary.get("quantities", {}))
+        lines += [f"  {sentence}" for sentence in preset_sentences(scene)]
     parts = ", ".join(f"{name} {seconds:.1f}" for name, seconds in summary["wall_seconds_by_part"].items() if seconds)
     lines.append(f"  wall time [s]            {parts}")
     lines.append(f"  files in                 {folder}")

@@ -24,6 +24,7 @@ from coupled.output.provenance import write_json
 from coupled.quantities import known_of
 from coupled.report import cautions
 from coupled.report.contact import contact_sentences
+from coupled.report.preset import preset_sentences
 from coupled.report.summary import summarise, tell
 from coupled.running.guard import LOOK, Failed, Guard
 from coupled.running.interrupt import Stop
@@ -139,7 +140,7 @@ class Run:
         """Advance to the end, to Ctrl-C, or to the first sign that something is wrong."""
         record, model = self.record, self.model
         record.say(cautions.before(self.built))
-        for sentence in contact_sentences(self.scene):
+        for sentence in [*preset_sentences(self.scene), *contact_sentences(self.scene)]:
             record.log(sentence)
         record.write_provenance()
         wanted = progress and self.comm.rank == 0
@@ -236,7 +237,7 @@ class Run:
             record.log(f"note: {sentence}")
         write_json(self.folder.file(SUMMARY), summary)
         record.write_provenance()
-        text = tell(summary, pictures, self.folder.path, self.scene.quantities)
+        text = tell(summary, pictures, self.folder.path, self.scene)
         record.log(text)
         print(text, flush=True)
 
@@ -247,7 +248,7 @@ def _tell_again(folder: RunFolder, scene: Scene) -> None:
     summary = json.loads(folder.file(SUMMARY).read_text())
     summary["quantities"], _ = known_of(scene, folder.path)
     write_json(folder.file(SUMMARY), summary)
-    print(tell(summary, pictures, folder.path, scene.quantities))
+    print(tell(summary, pictures, folder.path, scene))
 
 
 def _events(scene: Scene, window: float, substeps: int, last: int) -> Events:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Sequence
+from copy import deepcopy
 from pathlib import Path
 from typing import Any, get_args
 
@@ -15,20 +16,22 @@ from coupled.scene.columns import read_schedules
 from coupled.scene.find import find_scene
 from coupled.scene.knobs import plain
 from coupled.scene.overrides import apply_override, parse_override
+from coupled.scene.preset import KNOBS, dotted, take_preset
 from coupled.scene.refusal import translate
 from coupled.scene.scene import Scene
 
 INHERITED = ("units", "gravity", "box", "intruders", "contact", "damping")
-_BED = "bed"
+_BED, _ACCURACY = "bed", "accuracy"
 
 
-def load_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
+def load_scene(path: str | Path, overrides: Sequence[str] = (), *, accuracy: str | None = None) -> Scene:
     """Read, complete and check a scene.
 
     A scene that names a bed takes `units`, `gravity`, `box`, `intruders`, `contact` and `damping` from it
     unless it has its own; if its own `contact` has nothing but `pairs`, they are added to the bed's
     contact law. Overrides act after that; those that start with ``bed.`` act on the bed. The rows of a
-    CSV file that a load's schedule names become part of the scene.
+    CSV file that a load's schedule names become part of the scene. A preset gives way to a key in the file if the
+    file asks for it, and only to overrides if `accuracy` does.
 
     Parameters
     ----------
@@ -36,13 +39,16 @@ def load_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
         Path of a TOML file, or the bare name of a scene that ships.
     overrides
         Single keys, ``"time.step=1e-5"`` or ``"grains.sizes.0.count=10"``.
+    accuracy
+        Preset instead of the one that the file asks for; the same as the override ``"accuracy=draft"``.
 
     Raises
     ------
     SceneError
         One sentence with the key's path, its value, what is allowed and the remedy.
     """
-    return _load(find_scene(path), [parse_override(text) for text in overrides], ())
+    own = [parse_override(text) for text in overrides]
+    return _load(find_scene(path), own if accuracy is None else [(["accuracy"], accuracy), *own], ())
 
 
 def dump_scene(scene: Scene, *, without: frozenset[str] = frozenset()) -> str:
@@ -58,17 +64,30 @@ def _load(path: Path, overrides: list[Override], above: tuple[Path, ...]) -> Sce
     try:
         for_bed = [(keys[1:], value) for keys, value in overrides if keys[0] == _BED and keys[1:]]
         own = [(keys, value) for keys, value in overrides if keys[0] != _BED or not keys[1:]]
+        asked = [value for keys, value in own if keys == [_ACCURACY]]
+        own = [(keys, value) for keys, value in own if keys != [_ACCURACY]]
+        written = dotted(data)
         _resolve_bed(data, path, own, for_bed, above)
-        for keys, value in own:
-            apply_override(data, keys, value)
-        read_schedules(data, path.parent)
-        scene = Scene.model_validate(data)
+        preset = [*asked, data.pop(_ACCURACY, None)][0]
+        if preset is not None:
+            apart = [(keys, value) for keys, value in own if ".".join(keys) not in KNOBS]
+            scene = _with_overrides(deepcopy(data), apart, path.parent)
+            by_hand = dotted({".".join(keys): value for keys, value in overrides})
+            take_preset(data, scene, preset, by_command=bool(asked), written=written, overrides=by_hand)
+        scene = _with_overrides(data, own, path.parent)
         plain(scene)  # refuses factors that make no scene
         return scene
     except ValidationError as error:
         raise _named(path, translate(error, DESCRIPTIONS)) from None
     except SceneError as error:
         raise _named(path, error) from None
+
+
+def _with_overrides(data: dict[str, Any], own: list[Override], folder: Path) -> Scene:
+    for keys, value in own:
+        apply_override(data, keys, value)
+    read_schedules(data, folder)
+    return Scene.model_validate(data)
 
 
 def _read(path: Path) -> dict[str, Any]:

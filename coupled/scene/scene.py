@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from coupled.scene.accuracy import Accuracy, Preset
 from coupled.scene.contact import Contact, Damping
 from coupled.scene.grains import AnyGrains, Box, Grains
 from coupled.scene.interface import AnyRow, Interface
@@ -28,6 +29,7 @@ class Scene(Table):
     title: Annotated[str, Field(min_length=1)] = Field(description="one line that says what it is")
     units: Literal["SI", "dimensionless"] = Field("SI", description="units of all numbers")
     gravity: Vector = Field((0.0, 0.0), description="acceleration of gravity [m/s2]")
+    accuracy: Accuracy | None = Field(None, description="preset of the numerical keys")
     time: Time = Field(description="duration and step")
     box: Box | None = Field(None, description="rigid walls and periodic sides")
     grains: AnyGrains | None = Field(None, description="free grains")
@@ -40,6 +42,7 @@ class Scene(Table):
     rows: tuple[AnyRow, ...] = Field((), description="rows of fixed grains")
     output: Output = Field(default_factory=Output, description="what is written")
     quantities: tuple[Quantity, ...] = Field((), description="numbers of interest, told at the end of a run")
+    preset: Preset | None = Field(None, description="what a preset did to this scene, written where it is read")
     bed: Scene | None = Field(
         None, description="the scene that grains.bed names, whole; read from its file when absent"
     )

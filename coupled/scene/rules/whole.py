@@ -12,6 +12,12 @@ if TYPE_CHECKING:
 
 def check_whole(scene: Scene) -> None:
     """Check that there is something to compute and that no table hangs in the air."""
+    if scene.accuracy is not None:
+        raise refusal(
+            "accuracy",
+            scene.accuracy,
+            "is read at the top of a scene file, and holds for the bed as well; remove it here, or give --accuracy",
+        )
     if scene.grains is None and scene.structure is None:
         raise missing("grains", "a scene needs grains or a structure; add [grains] or [structure]")
     if scene.interface is not None and scene.structure is None:
