@@ -117,13 +117,16 @@ class _Campaign:
                     task = self._waiting.popleft()
                     self._running[self._crew.submit(task, self._overwrite)] = task
                 shares = sum(share_done(task) for task in self._running.values()) if bar.wanted else 0.0
-                bar.update(len(self._ended), shares, stopping=stopping)
+                bar.update(self._at_end(), shares, stopping=stopping)
                 self._collect(bar)
         return [self._ended[task.folder] for task in self._tasks]
 
     def _wished(self) -> bool:
         """Whether the user wants to stop: said to this process, or to one of the crew."""
         return self._stop.asked or any(outcome.status == "stopped" for outcome in self._ended.values())
+
+    def _at_end(self) -> int:
+        return sum(outcome.status != "stopped" for outcome in self._ended.values())
 
     def _drop(self) -> None:
         while self._waiting:

@@ -14,6 +14,7 @@ from typing import Protocol
 from coupled.campaign.task import Outcome, Task
 from coupled.campaign.worker import WISH, start, work
 
+RUNS_EACH = 20  # of a process: dolfinx keeps some megabytes of each structure, whatever is done to free them
 KILLED = "the process of this run was killed, perhaps for want of memory: take fewer at a time, then go on"
 
 
@@ -65,7 +66,11 @@ class Processes:
         except BrokenProcessPool:
             slot.pool.shutdown(wait=False)
             return Outcome(task=task, status="failed", message=KILLED)
-        self._idle.append(slot)
+        slot.runs += 1
+        if slot.runs < RUNS_EACH:
+            self._idle.append(slot)
+        else:
+            slot.pool.shutdown(wait=False)
         return outcome
 
     def stop(self) -> None:
@@ -87,6 +92,7 @@ class _Slot:
 
     def __init__(self, threads: int) -> None:
         self.pool = ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn"))
+        self.runs = 0
         self._process = self.pool.submit(start, threads).result()
 
     def send(self, wish: signal.Signals) -> None:

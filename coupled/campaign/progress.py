@@ -27,7 +27,7 @@ class CampaignProgress:
         self._console = Console(stderr=True)
         self._count, self._wanted = count, wanted
         self._bar: Progress | None = None
-        self._begun, self._first = time.perf_counter(), None
+        self._first: tuple[float, float] | None = None  # time and share done when the runs began to move
 
     def __enter__(self) -> CampaignProgress:
         if self._wanted and self._console.is_terminal:
@@ -50,22 +50,25 @@ class CampaignProgress:
         return self._bar is not None
 
     def update(self, ended: int, running: float, *, stopping: bool) -> None:
-        """Report the number of runs that have ended and the sum of the shares of those under way."""
+        """Report the number of runs that have come to an end and the sum of the shares of those under way."""
         if self._bar is None:
             return
         done = ended + running
-        self._first = done if self._first is None else self._first
         note = "stopping" if stopping else self._left(done)
         said = f"{ended} of {self._count} runs"
         self._bar.update(self._task, completed=done, description=said, note=note)
 
     def _left(self, done: float) -> str:
-        gained = done - self._first
-        if gained <= 0.0:
+        """Time left at the pace since the first runs began to move: until then they load."""
+        now = time.perf_counter()
+        if self._first is None or done < self._first[1]:
+            self._first = (now, done)
+        begun, first = self._first
+        if done == first:
+            self._first = (now, done)
             return ""
-        seconds = (time.perf_counter() - self._begun) * (self._count - done) / gained
-        minutes, rest = divmod(round(seconds), 60)
-        return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d} left"
+        minutes, seconds = divmod(round((now - begun) * (self._count - done) / (done - first)), 60)
+        return f"{minutes // 60}:{minutes % 60:02d}:{seconds:02d} left"
 
     def tell(self, outcome: Outcome) -> None:
         """Name a run that failed."""
