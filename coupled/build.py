@@ -141,6 +141,7 @@ def _particles(
         "period": (None, None) if scene.box is None else scene.box.period,
         "scheme": scene.time.integrator,
         "precision": "float64" if scene.grains is None else scene.grains.precision,
+        "skin_factor": 1.0 if scene.grains is None else scene.grains.skin_factor,
         "facets": facets,
         "gravity": scene.gravity,
         "threads": threads,

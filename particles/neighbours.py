@@ -61,6 +61,8 @@ class ContactList:
         Listed together with the grains; their own histories are kept in "float64".
     precision : str
         Of the histories, "float64" or "float32".
+    skin_factor : float
+        On the skin that is chosen for the speed of the grains.
     """
 
     def __init__(
@@ -72,8 +74,9 @@ class ContactList:
         period: Period = (None, None),
         facets: FacetContacts | None = None,
         precision: str = "float64",
+        skin_factor: float = 1.0,
     ) -> None:
-        self.contact = contact
+        self.contact, self.skin_factor = contact, skin_factor
         self.ledger, self.precision = ledger, precision
         self.period, self.facets = period, facets
         self.skin = 0.0
@@ -91,9 +94,9 @@ class ContactList:
         self._require_finite(grains)
         first = len(self.pairs.start) == 1
         if self.facets is None:
-            self.skin = choose_skin(grains, dt)
+            self.skin = self.skin_factor * choose_skin(grains, dt)
         else:
-            self.skin = choose_skin(grains, dt, self.facets.speed)
+            self.skin = self.skin_factor * choose_skin(grains, dt, self.facets.speed)
             self.facets.settle(grains)
         old_of = np.arange(len(grains))
         if sort:

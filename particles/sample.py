@@ -39,7 +39,7 @@ def sample_limit(
     It has settled without friction, and so has more contacts (close to four to a grain that bears) than a bed with
     friction. Its overlaps are those of its own weight: a spring that stiffens with overlap has a smaller limit where it
     is pressed harder, for which `packing_limit` is made. For the soil of G 4, whose 15 000 grains at rest have
-    4.6e-5 s, it gives 4.55e-5 s; samples of other seeds gave 4.50e-5 to 4.67e-5 s.
+    4.6e-5 s, it gives 4.55e-5 s, with other seeds 4.50e-5 s.
 
     Parameters
     ----------

@@ -86,6 +86,9 @@ class ParticleSystem:
     precision : str
         "float64", or "float32": forces, masses and what contacts remember are stored in single precision, computed
         in double. Positions, velocities and radii are always double. It takes a quarter less memory, and more time.
+    skin_factor : float
+        On the reach of the contact list beyond contact, which is chosen for the speed of the grains: a longer list that
+        is made less often. It changes the order of sums, and so the last bits.
     threads : int
         The same bits for any number.
 
@@ -110,6 +113,7 @@ class ParticleSystem:
         period: Sequence[float | None] = (None, None),
         scheme: str = "leapfrog",
         precision: str = "float64",
+        skin_factor: float = 1.0,
         threads: int = 1,
     ) -> None:
         require("time step", time_step, above=0.0)
@@ -127,6 +131,7 @@ class ParticleSystem:
         if scheme not in SCHEMES:
             raise ParticleError(f"scheme {scheme!r} must be one of {', '.join(SCHEMES)}")
         self.scheme = scheme
+        require("skin factor", skin_factor, above=0.0)
         if precision not in PRECISIONS:
             raise ParticleError(f"precision {precision!r} must be one of {', '.join(PRECISIONS)}")
         grains.keep_in(precision)
@@ -150,7 +155,13 @@ class ParticleSystem:
             raise ParticleError("facets do not go together with periodic sides: leave out one of them")
         self.facets = None if facets is None else FacetContacts(facets, contact, ledger=ledger)
         self.list = ContactList(
-            contact, list(walls), ledger=ledger, period=self.period, facets=self.facets, precision=precision
+            contact,
+            list(walls),
+            ledger=ledger,
+            period=self.period,
+            facets=self.facets,
+            precision=precision,
+            skin_factor=skin_factor,
         )
         self._started = False
 

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from coupled.cli.options import OutOption, OverwriteOption, ResumeOption, SceneArgument, SetOption, refuse_both
+from coupled.cli.options import (
+    AccuracyOption,
+    OutOption,
+    OverwriteOption,
+    ResumeOption,
+    SceneArgument,
+    SetOption,
+    refuse_both,
+)
 from coupled.cli.speech import print_table
 from coupled.errors import LeitoError
 from coupled.running.launch import ranks
@@ -24,6 +32,7 @@ def ensemble(
         typer.Option(metavar="KEY=A,B,C", help="Values of a key; several keys: each with every other."),
     ] = None,
     overrides: SetOption = None,
+    accuracy: AccuracyOption = None,
     out: OutOption = None,
     jobs: Annotated[int | None, typer.Option(min=1, help="Samples at a time; cores over threads by default.")] = None,
     threads: Annotated[int, typer.Option(min=1, help="Threads for the grains of each sample.")] = 1,
@@ -45,7 +54,7 @@ def ensemble(
         scene,
         samples,
         vary=vary or (),
-        overrides=overrides or (),
+        overrides=[*([] if accuracy is None else [f"accuracy={accuracy}"]), *(overrides or ())],
         out=place,
         threads=threads,
         shared=Path("runs") if out is None else place,

@@ -16,6 +16,7 @@ USUAL_WALLS: tuple[Wall, ...] = ("left", "right", "floor")
 ACROSS: dict[Axis, tuple[Wall, ...]] = {"x": ("left", "right"), "y": ("floor", "lid")}
 Precision = Literal["float64", "float32"]
 PRECISION = Field("float64", description="stored forces, masses and contact memories; float32 saves memory and no time")
+SKIN_FACTOR = Field(1.0, description="factor on the reach of the contact lists beyond contact [-]: speed alone")
 COARSENING = Field(
     None,
     description="factor on all radii [-], with so many fewer grains that a bed fills its box as before; dashpots, the "
@@ -77,6 +78,7 @@ class Grains(Table):
     layout: Literal["lattice", "list"] = Field("lattice", description="how grains start")
     coarsening: Positive | None = COARSENING
     precision: Precision = PRECISION
+    skin_factor: Positive = SKIN_FACTOR
     positions: tuple[Annotated[tuple[Number, ...], Field(min_length=2, max_length=5)], ...] = Field(
         (), description="rows [x, y, vx, vy, omega] in m, m/s and rad/s, in the order of sizes"
     )
@@ -119,6 +121,7 @@ class SettledGrains(Table):
     bed: Annotated[str, Field(min_length=1)] = Field(description="name or path of the scene that settles the grains")
     coarsening: Positive | None = COARSENING
     precision: Precision = PRECISION
+    skin_factor: Positive = SKIN_FACTOR
 
 
 def _layout_of(data: Any) -> str:

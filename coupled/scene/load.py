@@ -68,7 +68,7 @@ def _load(path: Path, overrides: list[Override], above: tuple[Path, ...]) -> Sce
         own = [(keys, value) for keys, value in own if keys != [_ACCURACY]]
         written = dotted(data)
         _resolve_bed(data, path, own, for_bed, above)
-        preset = [*asked, data.pop(_ACCURACY, None)][0]
+        preset = [data.pop(_ACCURACY, None), *asked][-1]
         if preset is not None:
             apart = [(keys, value) for keys, value in own if ".".join(keys) not in KNOBS]
             scene = _with_overrides(deepcopy(data), apart, path.parent)

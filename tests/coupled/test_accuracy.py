@@ -12,6 +12,7 @@ import tomli_w
 from bad_scenes import GRAINS, TUBE, Case, changed, require_refusal
 
 from coupled.build import build
+from coupled.ensemble.samples import samples_of
 from coupled.errors import LeitoError
 from coupled.limits_before import coupling_limit_of, settled_limit_of
 from coupled.output import checkpoint
@@ -144,6 +145,12 @@ def test_reference_step_is_a_share_of_the_draft_step(tmp_path: Path) -> None:
     assert built[0].scene.interface.exchange == "predicted" and built[1].scene.interface.exchange == "iterated"
     assert built[1].scene.structure.tube.around == 2 * built[0].scene.structure.tube.around
     assert built[1].scene.time.step < 0.3 * settled_limit_of(built[1].scene)
+
+
+def test_ensembles_take_presets_as_one_key_more(tmp_path: Path) -> None:
+    samples = samples_of("bed", 2, vary=["accuracy=draft,reference"], overrides=["grains.seed=3"], out=tmp_path)
+    assert [sample.task.scene.preset.name for sample in samples] == ["draft", "draft", "reference", "reference"]
+    assert [sample.task.scene.grains.seed for sample in samples] == [3, 4, 3, 4]
 
 
 BAD: dict[str, Case] = {

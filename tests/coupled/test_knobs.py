@@ -232,6 +232,21 @@ def test_glued_grains_keep_their_size_over_that_of_the_grains(name: str, overrid
     assert len(interface.facet_lengths(shape)) * interface.grains_per_facet(shape) == number
 
 
+def test_skin_changes_how_often_lists_are_made_and_nothing_else() -> None:
+    """Sums in another order: round-off, which 400 steps of falling grains do not let grow beyond 1e-12 of the box."""
+    places, rebuilds = [], []
+    for factor in (0.5, 1.0, 4.0):
+        tables = changed(GRAINS, {"grains.jitter": 0.5, "grains.skin_factor": factor, "time.step": 5e-5})
+        system = build(Scene.model_validate(tables)).model.particles
+        system.advance(400)
+        order = np.argsort(system.grains.number)
+        places.append(system.grains.position[order])
+        rebuilds.append(system.rebuilds)
+    assert rebuilds[0] > rebuilds[1] > rebuilds[2]
+    for other in places[1:]:
+        np.testing.assert_allclose(other, places[0], rtol=0.0, atol=1e-13)
+
+
 def test_bed_follows_what_stands_on_it() -> None:
     scene = plain(load_scene("elastic_tube", ["grains.coarsening=2", "contact.stiffness_factor=4"]))
     bare = load_scene("bed")
@@ -281,6 +296,7 @@ BAD: dict[str, Case] = {
         "time.refinement",
         ("time.step_fraction",),
     ),
+    "no skin": (GRAINS, {"grains.skin_factor": 0.0}, "grains.skin_factor", ("greater than 0",)),
     "fraction above one": (
         GRAINS,
         {"time.step": "auto", "time.step_fraction": 1.5},
