@@ -25,6 +25,7 @@ from particles import (
     LinearSpringDashpot,
     MindlinFriction,
     ParticleSystem,
+    Shaking,
     Wall,
     box,
     continued,
@@ -79,6 +80,7 @@ def cases() -> list[Case]:
     """All features of the grains alone, each beside what it is added to."""
     left, right, floor = box(beds.WIDTH, beds.HEIGHT)
     moving = [left, right, Wall(point=floor.point, normal=floor.normal, velocity=(0.0, 0.01), name="floor")]
+    shaken, shaking = dataclasses.replace(floor, shaken=True), Shaking(amplitude=1e-6, period=0.1)
     table = ContactTable([[beds.FULL, beds.FULL], [beds.FULL, beds.FULL]])
     return [
         Case("normal spring alone", None, lambda: system(SPRING)),
@@ -91,6 +93,7 @@ def cases() -> list[Case]:
         Case("Mindlin's friction", "Hertz's spring", lambda: system(MINDLIN)),
         Case("no walls", FULL, lambda: system(beds.FULL, walls=[])),
         Case("moving walls", FULL, lambda: system(beds.FULL, walls=moving)),
+        Case("shaken floor", FULL, lambda: system(beds.FULL, walls=[left, right, shaken], shaking=shaking)),
         Case("periodic in x", "no walls", lambda: system(beds.FULL, walls=[], period=(beds.WIDTH, None))),
         Case("table of materials", FULL, lambda: system(table)),
         Case(

@@ -58,6 +58,8 @@ def check_scene(scene: Scene, *, measure: bool = False) -> list[Row]:
     trial = _try_out(built, SETTLED_OVER_LOOSE if settled is None else 1.0)
     rows += _cost_rows(scene, built, trial)
     measured = measured_shares(tried, settled) if measure else {}
+    if measured and settled is None and built.model.particles is not None and not built.model.particles.look().count:
+        notes.append("--measure found no grains in contact: run the bed first, or take the shares by the table")
     rows += need_rows(scene, needless, trial, measured)
     return rows + [("note", "", sentence) for sentence in notes]
 
