@@ -12,8 +12,7 @@ from coupled.measuring.findings import Findings
 from coupled.measuring.record import Floats
 from coupled.measuring.rises import Rise, height_over_floor
 from coupled.measuring.states import Rolls
-from coupled.report.drawing import Axes, Figure, plt
-from particles import ParticleError
+from coupled.report.drawing import Axes, Figure, NullFormatter, plt
 from particles.measures import portrait, strobe
 
 WIDTH = 7.0
@@ -141,6 +140,7 @@ def profiles(found: Sequence[Findings]) -> Figure | None:
     panels[2].set(xlabel="temperature over mean mass")
     if any((one.profiles.mean["temperature"] > 0.0).any() for one in shown):
         panels[2].set_xscale("log")
+        panels[2].xaxis.set_minor_formatter(NullFormatter())
     (panels[0] if len(shown) > 1 else panels[2]).legend(fontsize=7, frameon=False)
     figure.suptitle(f"{_title(found)}: means of {sum(one.profiles.frames for one in shown)} frames", fontsize=10)
     return figure
@@ -185,17 +185,15 @@ def phase_portrait(one: Findings) -> Figure | None:
     if not one.rises or record.shaken is None:
         return None
     rise, shaken, time = one.rises[0], record.shaken, record.history["time"]
-    if len(time) < 2 or shaken.period / float(np.median(np.diff(time))) < FEWEST_ROWS - 0.01:
+    rows = shaken.period / float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+    if rows < FEWEST_ROWS - 0.01:
         return None
     height, on = height_over_floor(record, rise.name), time >= rise.samples[0].time[0]
     level = strobe(time, height, period=shaken.period, start=shaken.start)
     swing = (height - np.interp(time, level.time, level.value))[on]
     speed = record.history.get(f"{rise.name}_vy", np.gradient(height, time))[on]
     figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH + 1.0, 3.8), layout="constrained")
-    try:
-        seen = portrait(time[on], swing, period=shaken.period, start=shaken.start, bins=min(32, FEWEST_ROWS))
-    except ParticleError:
-        return None
+    seen = portrait(time[on], swing, period=shaken.period, start=shaken.start, bins=min(32, round(rows)))
     left.plot(seen.phase, seen.value, ".", ms=2, color=COLOURS[0], alpha=0.4)
     left.plot((np.arange(len(seen.mean)) + 0.5) / len(seen.mean), seen.mean, "k-", lw=1.2)
     left.set(xlabel="phase of the shaking", ylabel=_length([one], "height over the floor, rise taken out"))

@@ -137,7 +137,7 @@ def _view(record: Record, every: int) -> View:
         for axis, length in enumerate(record.period):
             if length is not None:
                 low[axis], high[axis] = 0.0, length
-    margin = 0.02 * float((high - low).max())
+    margin = 0.02 * float((high - low).max()) * np.array([length is None for length in record.period])
     first = next(record.frames("grains", 1), None)
     return View(low=low - margin, high=high + margin, colours=_colours(record, first))
 

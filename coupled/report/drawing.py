@@ -16,6 +16,7 @@ from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.collections import EllipseCollection, PolyCollection  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
+from matplotlib.ticker import NullFormatter  # noqa: E402
 
 __all__ = [
     "AbstractMovieWriter",
@@ -24,6 +25,7 @@ __all__ = [
     "FFMpegWriter",
     "Figure",
     "Line2D",
+    "NullFormatter",
     "PillowWriter",
     "PolyCollection",
     "plt",
