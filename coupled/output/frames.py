@@ -1,7 +1,8 @@
-"""Frames for ParaView: one HDF5 file per frame and an XDMF index, rewritten whole.
+"""Frames for ParaView: one HDF5 file per frame and an XDMF index.
 
 A file per frame and not one that grows: a run killed in the middle of a frame loses that frame
-alone, and a resumed run drops the frames that lie after its checkpoint.
+alone, and a resumed run drops the frames that lie after its checkpoint. The index gets each frame in
+one write over its closing tags: what a frame costs does not grow with their number.
 """
 
 from __future__ import annotations
@@ -27,6 +28,10 @@ CELLS = {
 }
 
 
+OPENING = '<?xml version="1.0" encoding="us-ascii"?>\n<Xdmf Version="3.0"><Domain>'
+CLOSING = b"</Grid></Domain></Xdmf>"
+
+
 class Frames:
     """A time series of one kind of points and cells, `<name>.xdmf` and `frames/<name>.*.h5`.
 
@@ -44,16 +49,17 @@ class Frames:
         self.folder, self.name = folder, name
         self._count = 0
         self.last_time = -math.inf  # of the last frame [s]
-        self._index = ET.Element("Xdmf", Version="3.0")
-        domain = ET.SubElement(self._index, "Domain")
-        self._series = ET.SubElement(domain, "Grid", Name=name, GridType="Collection", CollectionType="Temporal")
+        self._index = folder / f"{name}.xdmf"
+        kept = []
         (folder / "frames").mkdir(parents=True, exist_ok=True)
         for path in sorted((folder / "frames").glob(f"{name}.*.h5")):
             time = _time_of(path)
             if keep_until is not None and time is not None and time <= keep_until:
-                self._enter(time, path)
+                kept.append(self._entry(time, path))
             else:
                 path.unlink()
+        if kept:
+            self._begin(b"".join(kept))
 
     def write(
         self,
@@ -75,17 +81,27 @@ class Frames:
             for label, values in data.items():
                 file[f"data/{label}"] = _in_space(values)
         os.replace(beside, path)
-        self._enter(time, path)
-        index = self.folder / f"{self.name}.xdmf"
-        beside = index.with_suffix(".part")
-        ET.ElementTree(self._index).write(beside, xml_declaration=True, encoding="utf-8")
-        os.replace(beside, index)
+        first = self._count == 0
+        entry = self._entry(time, path)
+        if first:
+            self._begin(entry)
+        else:
+            with open(self._index, "r+b", buffering=0) as file:
+                file.seek(-len(CLOSING), os.SEEK_END)
+                file.write(entry + CLOSING)
 
-    def _enter(self, time: float, path: Path) -> None:
-        """Add a frame file to the index."""
+    def _begin(self, entries: bytes) -> None:
+        """Put an index of some frames into its place."""
+        series = f'<Grid Name="{self.name}" GridType="Collection" CollectionType="Temporal">'
+        beside = self._index.with_suffix(".part")
+        beside.write_bytes((OPENING + series).encode() + entries + CLOSING)
+        os.replace(beside, self._index)
+
+    def _entry(self, time: float, path: Path) -> bytes:
+        """What the index says of the next frame."""
         self._count += 1
         self.last_time = time
-        grid = ET.SubElement(self._series, "Grid", Name=self.name, GridType="Uniform")
+        grid = ET.Element("Grid", Name=self.name, GridType="Uniform")
         ET.SubElement(grid, "Time", Value=repr(time))
         with h5py.File(path, "r") as file:
             cell, nodes = CELLS[str(file.attrs["kind"])]
@@ -99,6 +115,7 @@ class Frames:
             for label, data in file["data"].items():
                 kind = "Vector" if data.ndim == 2 else "Scalar"
                 _refer(ET.SubElement(grid, "Attribute", Name=label, AttributeType=kind, Center="Node"), data, path)
+        return ET.tostring(grid)
 
 
 def read_frame(path: Path) -> tuple[float, dict[str, NDArray[Any]]]:

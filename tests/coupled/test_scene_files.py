@@ -16,6 +16,7 @@ NAMES = (
     "shaken_smooth_walls",
     "shaken_no_friction",
     "shaken_periodic",
+    "brazil_nut",
     "beam_vibration",
     "rolling_tube",
     "elastic_beam",
