@@ -13,10 +13,10 @@ from coupled.errors import QuantityError
 from coupled.output import checkpoint, history
 from coupled.quantities.curve import Curve
 from coupled.quantities.frequency import frequency_of
-from coupled.quantities.packing import packing_fraction
 from coupled.quantities.surface import mean_height, slope_angle
 from coupled.scene import Scene, load_scene
 from coupled.scene.quantities import ColumnOverTime, ColumnValue, ColumnWhen, Packing, Quantity, Surface
+from particles.measures import Cells, fraction_in_cells
 
 SCENE, SUMMARY = "scene.toml", "summary.json"
 Floats = NDArray[np.float64]
@@ -108,16 +108,28 @@ def _(quantity: ColumnWhen, folder: Path) -> float:
 
 @_value.register
 def _(quantity: Surface, folder: Path) -> float:
+    scene = load_scene(folder / SCENE)
     x, y, radius = _free_grains(folder)
+    left, right = _ends(quantity, scene)
+    bottom = float((y - radius).min())
+    window = Cells(
+        left=left, bottom=bottom, width=right - left, height=float((y + radius).max()) - bottom,
+        columns=1, rows=1, period=_period(scene),
+    )  # fmt: skip
+    across, up, which = (np.concatenate(column) for column in zip(*window.images(x, y, radius), strict=True))
     law = mean_height if quantity.kind == "surface_height" else slope_angle
-    return law(x, y, radius, *_ends(quantity, folder))
+    return law(left + across, bottom + up, radius[which], left, right)
 
 
 @_value.register
 def _(quantity: Packing, folder: Path) -> float:
-    x, y, radius = _free_grains(folder)
-    left, right = _ends(quantity, folder)
-    return packing_fraction(x, y, radius, (left, right), (quantity.bottom, quantity.top))
+    scene = load_scene(folder / SCENE)
+    left, right = _ends(quantity, scene)
+    rectangle = Cells(
+        left=left, bottom=quantity.bottom, width=right - left, height=quantity.top - quantity.bottom,
+        columns=1, rows=1, period=_period(scene),
+    )  # fmt: skip
+    return float(fraction_in_cells(*_free_grains(folder), rectangle)[0, 0])
 
 
 def _curve(folder: Path, column: str) -> Curve:
@@ -140,11 +152,15 @@ def _free_grains(folder: Path) -> tuple[Floats, Floats, Floats]:
     return x, y, radius
 
 
-def _ends(quantity: Surface | Packing, folder: Path) -> tuple[float, float]:
-    """Left and right end [m], from the box of the run where they are not given."""
+def _ends(quantity: Surface | Packing, scene: Scene) -> tuple[float, float]:
+    """Left and right end [m], from the box of the scene where they are not given."""
     left, right = quantity.left, quantity.right
-    if left is None or right is None:
-        box = load_scene(folder / SCENE).box
-        assert box is not None, "the rules of the scene demand ends or a box"
-        left, right = 0.0 if left is None else left, box.width if right is None else right
-    return left, right
+    if right is None:
+        assert scene.box is not None, "the rules of the scene demand ends or a box"
+        right = scene.box.width
+    return 0.0 if left is None else left, right
+
+
+def _period(scene: Scene) -> tuple[float | None, None]:
+    """Length after which x repeats [m]; heights are told as they are."""
+    return (None if scene.box is None else scene.box.period[0], None)

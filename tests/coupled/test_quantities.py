@@ -10,10 +10,7 @@ import pytest
 from coupled.errors import QuantityError
 from coupled.quantities.curve import Curve
 from coupled.quantities.frequency import frequency_of
-from coupled.quantities.packing import packing_fraction
 from coupled.quantities.surface import mean_height, slope_angle
-
-EPS = np.finfo(float).eps
 
 
 def parabola() -> Curve:
@@ -98,23 +95,3 @@ def test_slope_of_a_pile(angle: float) -> None:
 def test_surface_without_grains() -> None:
     with pytest.raises(QuantityError, match="no grains lie between x = 5 and 6 m"):
         mean_height(np.zeros(1), np.zeros(1), np.ones(1), 5.0, 6.0)
-
-
-def test_packing_of_crystals() -> None:
-    """Square and hexagonal packings of touching discs, in rectangles that cut discs at every side."""
-    r = 0.5
-    x, y = (a.ravel() for a in np.meshgrid(np.arange(30.0), np.arange(30.0)))
-    one = np.full(900, r)
-    # whole periods from anywhere hold the crystal's fraction exactly
-    assert packing_fraction(x, y, one, (3.21, 23.21), (5.77, 17.77)) == pytest.approx(math.pi / 4, rel=100 * EPS)
-    x, y = x + 0.5 * (y % 2), y * math.sqrt(3.0) / 2
-    height = 6 * math.sqrt(3.0)
-    found = packing_fraction(x, y, one, (3.21, 23.21), (4.4, 4.4 + height))
-    assert found == pytest.approx(math.pi / (2 * math.sqrt(3.0)), rel=1000 * EPS)
-
-
-def test_packing_of_one_disc_at_a_corner_and_around_the_rectangle() -> None:
-    zero, r = np.zeros(1), np.array([2.0])
-    assert packing_fraction(zero, zero, r, (0.0, 3.0), (0.0, 3.0)) == pytest.approx(math.pi / 9, rel=10 * EPS)
-    assert packing_fraction(zero, zero, r, (-0.1, 0.1), (-0.2, 0.2)) == pytest.approx(1.0, rel=1000 * EPS)
-    assert packing_fraction(zero, zero, r, (1.9, 3.0), (1.9, 3.0)) == pytest.approx(0.0, abs=10 * EPS)

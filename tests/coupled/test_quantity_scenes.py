@@ -8,7 +8,20 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from bad_scenes import BEAM_ON_ROW, GONE, GRAINS, HERTZ, PERIODIC, RIGID, SHAKEN, SURFACES, TUBE, Case, changed, require_refusal
+from bad_scenes import (
+    BEAM_ON_ROW,
+    GONE,
+    GRAINS,
+    HERTZ,
+    PERIODIC,
+    RIGID,
+    SHAKEN,
+    SURFACES,
+    TUBE,
+    Case,
+    changed,
+    require_refusal,
+)
 
 from coupled.build import build
 from coupled.errors import QuantityError
@@ -129,6 +142,12 @@ BAD: dict[str, Case] = {
         "quantities.0.top",
         ("not above bottom = 0.1 m",),
     ),
+    "beyond a period": (
+        changed(GRAINS, {"box.periodic": ["x"]}),
+        {"quantities": [{"name": "a", "kind": "surface_height", "left": -0.01}]},
+        "quantities.0.right",
+        ("more than a period of 0.1 m",),
+    ),
     "no top": (
         GRAINS,
         {"quantities": [{"name": "a", "kind": "packing_fraction"}]},
@@ -223,3 +242,32 @@ def test_drop_and_bed_of_falling_discs(tmp_path: Path) -> None:
     assert when == pytest.approx(0.05, abs=2.5e-6)  # curvature g h^2/8 of a piece over the speed, 0.5 m/s
     assert packing == pytest.approx(1.5 * math.pi * 0.01 / 0.95, rel=1e-9)  # one disc whole, one cut through its centre
     assert angle > 0.0
+
+
+def test_bed_with_periodic_sides_goes_on_beyond_them(tmp_path: Path) -> None:
+    """A disc that has gone through the left side: half of it lies at the right one, and all of it in the box."""
+    tables = {
+        "title": "a disc crosses a seam",
+        "time": {"duration": 0.15, "step": 1e-4},
+        "box": {"width": 1.0, "height": 1.0, "walls": [], "periodic": ["x"]},
+        "grains": {
+            "sizes": [{"radius": 0.1, "count": 1}],
+            "density": 1000.0,
+            "layout": "list",
+            "positions": [[0.15, 0.5, -1.0, 0.0]],
+        },
+        "contact": {"normal_stiffness": 1e6},
+        "quantities": [
+            {"name": "all", "kind": "packing_fraction", "top": 1.0},
+            {"name": "right", "kind": "packing_fraction", "top": 1.0, "left": 0.5},
+            {"name": "height", "kind": "surface_height", "left": 0.9},
+        ],
+        "output": {"figures": False},
+    }
+    scene = Scene.model_validate(tables)
+    run_scene(scene, out=tmp_path / "seam", threads=1, progress=False)
+    whole, right, height = (evaluate(quantity, tmp_path / "seam") for quantity in scene.quantities)
+    assert whole == pytest.approx(math.pi * 0.01, rel=1e-9)
+    assert right == pytest.approx(math.pi * 0.01, rel=1e-6)  # half of the disc in half of the box
+    # the mean of a quarter circle, by places that are 1/20 of a diameter apart and see its vertical end
+    assert height == pytest.approx(0.5 + 0.1 * math.pi / 4, abs=1e-3)

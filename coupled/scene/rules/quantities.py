@@ -65,5 +65,7 @@ def _check_place(scene: Scene, quantity: Surface | Packing, key: str) -> None:
     right = width if quantity.right is None else quantity.right
     if right <= left:
         raise refusal(f"{key}.right", right, f"is not right of left = {left:g} m; give a larger one")
+    if scene.box is not None and "x" in scene.box.periodic and right - left > width:
+        raise refusal(f"{key}.right", right, f"is more than a period of {width:g} m right of left; give a smaller one")
     if isinstance(quantity, Packing) and quantity.top <= quantity.bottom:
         raise refusal(f"{key}.top", quantity.top, f"is not above bottom = {quantity.bottom:g} m; give a larger one")
