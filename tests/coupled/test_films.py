@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 from shaken_record import make
+from typer.testing import CliRunner
 
+from coupled.cli.app import app
 from coupled.errors import LeitoError
 from coupled.report.animation import INTRUDER, animate
 from coupled.report.drawing import FFMpegWriter
@@ -54,6 +56,12 @@ def test_a_film_has_the_frames_asked_for_in_the_time_asked_for(run, tmp_path):
     near = np.abs(picture - INTRUDER).sum(axis=2) < 40
     assert near.any()  # the intruder in its colour
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 8  # layers
+
+
+def test_the_command_says_where_the_film_is(run, tmp_path):
+    said = CliRunner().invoke(app, ["animate", str(run), "--out", str(tmp_path / "film.gif"), "--every", "3"])
+    assert said.exit_code == 0 and said.output.strip() == str(tmp_path / "film.gif")
+    assert (tmp_path / "film.gif").stat().st_size > 0
 
 
 def test_refusals(run, tmp_path, monkeypatch):

@@ -183,19 +183,22 @@ def _draw() -> None:
         )
         edges = edges_of(name, sampling)
         curves = [rate_function(sampling, n, edges) for n in lengths]
+        shown = slice(None, None, 2 if name in LATTICE else 1)  # not what lies between the values of a lattice
         for curve, tone in zip(curves, ("#9ecae1", "#6baed6", "#3182bd"), strict=True):
-            axes.errorbar(
-                curve.v, curve.rate, curve.half_width, fmt=".", color=tone, ms=4, lw=0.8, label=f"n = {curve.periods}"
-            )
+            points = (part[shown] for part in (curve.v, curve.rate, curve.half_width))
+            axes.errorbar(*points, fmt=".", color=tone, ms=4, lw=0.8, label=f"n = {curve.periods}")
         limit = extrapolated(sampling, curves)
-        axes.errorbar(limit.v, limit.rate, limit.half_width, fmt="ks", ms=4, mfc="none", lw=0.8, label="limit of these")
+        points = (part[shown] for part in limit[:3])
+        axes.errorbar(*points, fmt="ks", ms=4, mfc="none", lw=0.8, label="limit of these")
         tilts = np.linspace(4.0 * TILTS[name][0], 4.0 * TILTS[name][-1], 41)
         found = cumulants(sampling, SETTLED[name], tilts)
         axes.errorbar(
             found.v, found.rate, found.half_width, fmt="r.", ms=3, lw=0.7, label=f"transform, n = {SETTLED[name]}"
         )
         reach = np.concatenate([found.v[np.isfinite(found.v)], limit.v[np.isfinite(limit.rate)]])
-        v = np.linspace(max(reach.min(), -0.995), min(reach.max(), 0.995), 120)
+        v = np.linspace(reach.min(), reach.max(), 120)
+        if name in LATTICE:
+            v = np.clip(v, -0.995, 0.995)
         axes.plot(v, sequence.rate(v), color="#2a9d8f", lw=1.2, label="closed form")
         axes.set(xlabel="v", ylabel="I(v)", title=NAMES[name])
         axes.title.set_fontsize(9)
