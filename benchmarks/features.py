@@ -45,6 +45,7 @@ HERTZ = dataclasses.replace(
     normal=HertzSpringDashpot(stiffness=beds.NORMAL.stiffness / MEAN_OVERLAP**0.5, restitution=0.4),
 )
 MINDLIN = dataclasses.replace(HERTZ, tangential=MindlinFriction(stiffness_ratio=0.05, damping_ratio=0.1, friction=0.8))
+DRAG = GlobalDamping(translational=0.1, rotational=0.1)
 DASHPOT = dataclasses.replace(beds.FULL, rolling=ElasticPlasticRolling(friction=0.2, damping_ratio=0.1))
 
 
@@ -96,12 +97,10 @@ def cases() -> list[Case]:
         Case("shaken floor", FULL, lambda: system(beds.FULL, walls=[left, right, shaken], shaking=shaking)),
         Case("periodic in x", "no walls", lambda: system(beds.FULL, walls=[], period=(beds.WIDTH, None))),
         Case("table of materials", FULL, lambda: system(table)),
-        Case(
-            "global damping", FULL, lambda: system(beds.FULL, damping=GlobalDamping(translational=0.1, rotational=0.1))
-        ),
         Case("velocity Verlet", FULL, lambda: system(beds.FULL, scheme="velocity_verlet")),
         Case("single precision", FULL, lambda: system(beds.FULL, precision="float32")),
         Case("ledger", FULL, lambda: system(beds.FULL, ledger=True)),
+        Case("global damping", "ledger", lambda: system(beds.FULL, ledger=True, damping=DRAG)),
         Case("180 glued grains", FULL, lambda: _pressed("glued")),
         Case("30 facets", FULL, lambda: _pressed("facets")),
     ]
