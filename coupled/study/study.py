@@ -12,6 +12,7 @@ from pathlib import Path
 from coupled.errors import LeitoError
 from coupled.output.provenance import write_json
 from coupled.report.quantities import unit_shown
+from coupled.running.launch import ranks
 from coupled.scene import Scene, load_scene
 from coupled.scene.quantities import Quantity
 from coupled.study import table
@@ -134,6 +135,9 @@ def run_study(
     Interrupted
         After Ctrl-C.
     """
+
+    if ranks() > 1:
+        raise LeitoError("a study makes its runs side by side itself: start it without mpirun, and give --jobs")
 
     def load(changes: Changes = (), accuracy: str | None = None) -> Scene:
         return load_scene(scene, (*wishes.overrides, *QUIET, *changes))

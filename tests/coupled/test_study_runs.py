@@ -123,7 +123,8 @@ def test_chance_is_told_from_error_and_threads_change_nothing(tmp_path):
     assert "not resolved, from fast to slow: " in (tmp_path / "study" / "study.md").read_text()
 
 
-def test_a_killed_study_goes_on_where_it_was(tmp_path):
+@pytest.mark.parametrize(("wish", "code"), [(signal.SIGKILL, -9), (signal.SIGINT, 130)])
+def test_a_study_that_is_ended_goes_on_where_it_was(wish, code, tmp_path):
     path = tmp_path / "scene.toml"
     path.write_text(tomli_w.dumps(BEAM | {"time": {"duration": 0.2, "step": 3.6e-5}}))
     command = [
@@ -135,9 +136,10 @@ def test_a_killed_study_goes_on_where_it_was(tmp_path):
     limit = time.monotonic() + 60.0
     while not (made := list(runs.glob("*/summary.json"))) and time.monotonic() < limit:
         time.sleep(0.02)
-    os.kill(process.pid, signal.SIGKILL)
-    process.wait()
-    assert made, process.stderr.read().decode()
+    os.kill(process.pid, wish)
+    said = process.communicate(timeout=60)[1].decode()
+    assert made and process.returncode == code, said
+    assert code < 0 or "the study is stopped; go on with --resume" in said
     moments = {summary: summary.stat().st_mtime_ns for summary in made}
     assert len(moments) < 5 and not (tmp_path / "study" / "study.csv").exists()
     again = subprocess.run([*command, "--resume"], capture_output=True, text=True, timeout=120)
@@ -146,6 +148,12 @@ def test_a_killed_study_goes_on_where_it_was(tmp_path):
     assert len(list(runs.glob("*/summary.json"))) == 5
     lines = again.stdout.splitlines()
     assert any(line.startswith("study of 5 settings") for line in lines) and "step = 0.5" in again.stdout
+
+
+def test_a_study_under_mpirun_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    with pytest.raises(LeitoError, match="start it without mpirun"):
+        study(tmp_path, BEAM)
 
 
 def without_quantities(scene):
