@@ -27,7 +27,8 @@ class Knob:
     turn : function
         Overrides that turn it.
     refine : function, optional
-        Overrides of a level of refinement, 1 for twice as fine; for knobs that the reference refines.
+        Overrides of a level of refinement, 1 for twice as fine, and what to take instead where the scene refuses them;
+        for knobs that the reference refines.
     falls : bool
         Whether the error falls with a power of the value, so that an order can be read off.
     usual : function
@@ -46,7 +47,7 @@ class Knob:
     values: tuple[Value, ...]
     own: Callable[[Scene], Value | None]
     turn: Callable[[Scene, Value], Changes]
-    refine: Callable[[Scene, int], Changes] | None = None
+    refine: Callable[[Scene, int], tuple[Changes, ...]] | None = None
     falls: bool = False
     usual: Callable[[Scene], bool] = _always
     sets_step: bool = False

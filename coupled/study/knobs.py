@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 
 from coupled.errors import LeitoError
-from coupled.scene import Scene
+from coupled.scene import RowUnder, Scene
 from coupled.scene.refusal import nearest
 from coupled.study import turns
 from coupled.study.knob import Knob
 from coupled.study.turns import Changes, Value, set_key
 
+CELLS = {1: (2.0,), 2: (4.0, 3.0)}  # factors by level: a row of springs may divide by 3 alone
 OPEN_STEP = 0.0  # the fraction of a step that is given as a number: none of those that are tried
 
 
@@ -42,7 +43,10 @@ def _own_rolling(scene: Scene) -> Value | None:
 
 
 def _own_glued(scene: Scene) -> Value | None:
+    """Glued grains above a row under them are its springs, and belong to the case."""
     interface = scene.interface
+    if any(isinstance(row, RowUnder) for row in scene.rows):
+        return None
     glued = interface is not None and interface.kind == "glued" and interface.per_facet is not None
     return 1.0 if glued else None
 
@@ -63,7 +67,7 @@ KNOBS: tuple[Knob, ...] = (
         values=(4.0, 2.0, 0.5),
         own=lambda scene: 1.0,
         turn=turns.step,
-        refine=lambda scene, level: turns.step(scene, 0.5**level),
+        refine=lambda scene, level: (turns.step(scene, 0.5**level),),
         falls=True,
         sets_step=True,
         usual=lambda scene: not _has_grains(scene),
@@ -114,7 +118,7 @@ KNOBS: tuple[Knob, ...] = (
         values=(0.5, 2.0),
         own=lambda scene: 1.0 if _elastic(scene) else None,
         turn=turns.mesh,
-        refine=lambda scene, level: turns.mesh(scene, 2.0**level),
+        refine=lambda scene, level: tuple(turns.mesh(scene, factor) for factor in CELLS[level]),
     ),
     Knob(
         name="order",

@@ -161,12 +161,20 @@ def _level(load: Load, knobs: Sequence[Knob], level: int) -> Setting:
     changes: Changes = ()
     turned = []
     for knob in knobs:
-        try:
-            finer = changes + knob.refine(load(changes), level)
-            with_step(load(finer))
-        except LeitoError:  # such as a row of springs under the facets, which fixes their number
-            continue
-        changes = finer
-        turned.append((knob.name, f"level {level}"))
+        finer = _first_possible(load, changes, knob.refine(load(changes), level))
+        if finer is not None:
+            changes = finer
+            turned.append((knob.name, f"level {level}"))
     changes, _ = borne(load, changes)
     return Setting(name=FINEST, role="reference", changes=changes, knobs=tuple(turned))
+
+
+def _first_possible(load: Load, before: Changes, alternatives: Sequence[Changes]) -> Changes | None:
+    """The changes of before with the first alternative that the scene does not refuse."""
+    for more in alternatives:
+        try:
+            with_step(load(before + more))
+        except LeitoError:  # such as a row of springs under the facets, which fixes their number
+            continue
+        return before + more
+    return None

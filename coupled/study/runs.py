@@ -82,7 +82,8 @@ class Runner:
         return with_step(self._load(changes, setting.accuracy))
 
     def _task(self, setting: Setting, scene: Scene, seed: int | None) -> Task:
-        digest = hashlib.sha256(f"{dump_scene(scene)}{setting.threads}".encode()).hexdigest()[:8]
+        shaping = scene.model_copy(update={"title": "", "quantities": ()})
+        digest = hashlib.sha256(f"{dump_scene(shaping)}{setting.threads}".encode()).hexdigest()[:8]
         slug = re.sub(r"[^A-Za-z0-9.]+", "_", setting.name).strip("_")[:60]
         number = "" if seed is None else f"-seed{seed}"
         folder = self._folder / RUNS / f"{slug}{number}-{digest}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 import pytest
 
 from coupled.errors import LeitoError
@@ -82,12 +81,17 @@ def test_the_reference_refines_step_and_mesh_and_a_level_stands_before_it():
     assert finest.time.step == pytest.approx(base.time.step / 4)
 
 
-def test_springs_under_facets_keep_the_mesh_of_the_reference():
-    """Winkler's row fixes the glued grains: three on a facet are not shared by two or by four."""
+def test_springs_under_facets_stay_as_many_where_the_reference_refines():
+    """Three glued grains on a facet are not shared by two facets or by four, but by three."""
     plan = make_plan(reader("winkler_beam"), [], {}, (), TERMS)
-    finest = next(setting for setting in plan.settings if setting.role == "reference")
-    assert with_step(load_scene("winkler_beam", finest.changes)).structure.beam.along == 40
-    assert dict(finest.knobs) == {"step": "level 2"}
+    scenes = {
+        setting.role: with_step(load_scene("winkler_beam", setting.changes))
+        for setting in plan.settings
+        if setting.role in ("finer", "reference")
+    }
+    assert [scenes[role].structure.beam.along for role in ("finer", "reference")] == [40, 120]
+    assert scenes["reference"].interface.per_facet == 1
+    assert "glued" not in {knob.name for knob in knobs_of(load_scene("winkler_beam"))}
 
 
 def test_finer_cells_take_the_step_that_their_exchange_bears():
