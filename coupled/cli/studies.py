@@ -7,7 +7,15 @@ from typing import Annotated
 
 import typer
 
-from coupled.cli.options import OutOption, OverwriteOption, ResumeOption, SceneArgument, SetOption, refuse_both
+from coupled.cli.options import (
+    AccuracyOption,
+    OutOption,
+    OverwriteOption,
+    ResumeOption,
+    SceneArgument,
+    SetOption,
+    refuse_both,
+)
 from coupled.cli.speech import print_table
 from coupled.errors import LeitoError
 
@@ -26,6 +34,7 @@ def study(
     jobs: Annotated[int | None, typer.Option(min=1, help="Runs side by side; as cores allow by default.")] = None,
     budget: Annotated[float | None, typer.Option(metavar="SECONDS", help="Wall time of all runs together.")] = None,
     overrides: SetOption = None,
+    accuracy: AccuracyOption = None,
     out: OutOption = None,
     resume: ResumeOption = False,
     overwrite: OverwriteOption = False,
@@ -41,6 +50,7 @@ def study(
 
     wishes = Wishes(
         overrides=tuple(overrides or ()),
+        accuracy=accuracy,
         knobs=None if knobs is None else knob_names(knobs),
         values=knob_values(values or ()),
         reference=tuple(reference or ()),

@@ -170,6 +170,13 @@ KNOBS: tuple[Knob, ...] = (
         turn=turns.rolling,
     ),
     Knob(
+        name="precision",
+        meaning="stored state of the grains",
+        values=("float32", "float64"),
+        own=lambda scene: scene.grains.precision if _has_grains(scene) else None,
+        turn=_set("grains.precision"),
+    ),
+    Knob(
         name="threads",
         meaning="threads of the grains",
         values=(2, 1),

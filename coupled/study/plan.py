@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from coupled.errors import LeitoError
 from coupled.scene import Scene
+from coupled.scene.accuracy import NAMES
 from coupled.step import with_step
 from coupled.study.cost import Trial, work
 from coupled.study.coupling import borne
@@ -15,7 +16,6 @@ from coupled.study.knobs import refined_together, values_of
 from coupled.study.setting import Load, Setting
 from coupled.study.turns import Changes, Value
 
-PRESETS: tuple[str, ...] = ()
 LEVELS = 2  # of refinement of the reference, each twice as fine, unless the budget or the user wants less
 REFERENCE_SHARE = 0.5  # of a budget, for the reference and the level before it
 BASE, FINEST = "as it is", "finest"
@@ -78,7 +78,7 @@ def make_plan(
     base = load()
     weigh = _weigher(load, base, terms.trial)
     first = [Setting(name=BASE, role="base"), *_reference(load, base, reference, weigh, terms)]
-    others = [weigh(Setting(name=f"accuracy = {name}", role="preset", accuracy=name)) for name in PRESETS]
+    others = [weigh(Setting(name=f"accuracy = {name}", role="preset", accuracy=name)) for name in NAMES]
     turned = [weigh(one_turn(load, knob, value, base)) for knob in knobs for value in values_of(knob, base, asked)]
     others += sorted(turned, key=lambda setting: setting.work)
     if terms.budget is not None and terms.seconds(first) > terms.budget:

@@ -40,6 +40,7 @@ class Runner:
     def __init__(self, load: Load, folder: Path, seeds: tuple[int, ...], jobs: int | None, progress: bool) -> None:
         self._load, self._folder, self._seeds, self._jobs, self._progress = load, folder, seeds, jobs, progress
         self._base: list[Path] = []
+        self._known: dict[str, Path] = {}
 
     def run(self, settings: Sequence[Setting]) -> list[Ran]:
         """Run settings, each with all seeds, those with equal threads side by side.
@@ -79,7 +80,8 @@ class Runner:
     def _sample(self, setting: Setting, seed: int | None) -> Scene:
         key = seed_key(self._load())
         changes = setting.changes if seed is None else (*setting.changes, f"{key}={seed}")
-        return with_step(self._load(changes, setting.accuracy))
+        resolved = with_step(self._load(changes, setting.accuracy))
+        return resolved.model_copy(update={"preset": None})  # settings of equal numbers are one run
 
     def _task(self, setting: Setting, scene: Scene, seed: int | None) -> Task:
         shaping = scene.model_copy(update={"title": "", "quantities": ()})
@@ -87,8 +89,9 @@ class Runner:
         slug = re.sub(r"[^A-Za-z0-9.]+", "_", setting.name).strip("_")[:60]
         number = "" if seed is None else f"-seed{seed}"
         folder = self._folder / RUNS / f"{slug}{number}-{digest}"
-        known = next((self._folder / RUNS).glob(f"*-{digest}"), folder)
-        return Task(name=f"{setting.name}{number}", scene=scene, folder=known, threads=setting.threads)
+        if digest not in self._known:
+            self._known[digest] = next((self._folder / RUNS).glob(f"*-{digest}"), folder)
+        return Task(name=f"{setting.name}{number}", scene=scene, folder=self._known[digest], threads=setting.threads)
 
     def _outcomes(self, tasks: Sequence[Task]) -> dict[Path, Outcome]:
         found: dict[Path, Outcome] = {}

@@ -43,6 +43,8 @@ class Wishes:
     ----------
     overrides : tuple
         Of the scene in every setting.
+    accuracy : str, optional
+        Preset of the base, instead of what the scene asks for.
     knobs : tuple, optional
         Names; none at all for presets and reference alone; absent: all that the scene has.
     values : dict
@@ -58,6 +60,7 @@ class Wishes:
     """
 
     overrides: tuple[str, ...] = ()
+    accuracy: str | None = None
     knobs: tuple[str, ...] | None = None
     values: Mapping[str, tuple[Value, ...]] = field(default_factory=dict)
     reference: Changes = ()
@@ -140,7 +143,7 @@ def run_study(
         raise LeitoError("a study makes its runs side by side itself: start it without mpirun, and give --jobs")
 
     def load(changes: Changes = (), accuracy: str | None = None) -> Scene:
-        return load_scene(scene, (*wishes.overrides, *QUIET, *changes))
+        return load_scene(scene, (*wishes.overrides, *QUIET, *changes), accuracy=accuracy or wishes.accuracy)
 
     base = load()
     case = Case(

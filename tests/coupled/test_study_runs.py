@@ -83,6 +83,14 @@ def test_the_table_shows_the_order_and_the_error_of_newmark_s_scheme(beam):
     assert done.judged["frequency"][0].ran.same_bits is None
 
 
+def test_settings_of_equal_numbers_are_one_run(beam):
+    """The preset "draft" of a structure alone is twice the step, "standard" the scene as it is."""
+    _, _, rows = beam
+    for preset, same in (("draft", "step = 2"), ("standard", "as it is")):
+        for column in ("value", "wall_s"):
+            assert rows[f"accuracy = {preset}"][column] == rows[same][column]
+
+
 def test_a_setting_that_is_refused_is_a_row_and_not_the_end(beam):
     folder, done, rows = beam
     assert rows["step = 100000"]["status"] == "refused" and "time.step" in rows["step = 100000"]["message"]
@@ -95,7 +103,7 @@ def test_a_setting_that_is_refused_is_a_row_and_not_the_end(beam):
 def test_work_done_is_reused_and_a_further_value_added(beam):
     folder, _, before = beam
     made = {path: path.stat().st_mtime_ns for path in (folder / "study" / "runs").glob("*/summary.json")}
-    assert len(made) == 5
+    assert len(made) == 6  # those of the step, and the preset "reference": the other two are among them
     with pytest.raises(LeitoError, match="holds a study already; go on with --resume"):
         run_study(folder / "scene.toml", Wishes(knobs=("step",)), out=folder / "study", progress=False)
     again = run_study(
@@ -104,7 +112,7 @@ def test_work_done_is_reused_and_a_further_value_added(beam):
         out=folder / "study", resume=True, progress=False, say=lambda sentence: None,
     )  # fmt: skip
     assert all(path.stat().st_mtime_ns == moment for path, moment in made.items())
-    assert len(list((folder / "study" / "runs").glob("*/summary.json"))) == 6
+    assert len(list((folder / "study" / "runs").glob("*/summary.json"))) == 7
     values = {item.setting.name: item.value for item in again.judged["frequency"]}
     assert values["step = 4"] == float(before["step = 4"]["value"]) and "step = 3" in values
 
@@ -128,7 +136,7 @@ def test_a_study_that_is_ended_goes_on_where_it_was(wish, code, tmp_path):
     path = tmp_path / "scene.toml"
     path.write_text(tomli_w.dumps(BEAM | {"time": {"duration": 0.2, "step": 3.6e-5}}))
     command = [
-        sys.executable, "-m", "coupled.cli", "study", str(path), "--values", "step=4,2,0.5", "--knobs", "step",
+        sys.executable, "-m", "coupled.cli", "study", str(path), "--values", "step=4",
         "--jobs", "1", "--reference", "time.step=9e-6", "--out", str(tmp_path / "study"), "--no-progress",
     ]  # fmt: skip
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
@@ -147,7 +155,7 @@ def test_a_study_that_is_ended_goes_on_where_it_was(wish, code, tmp_path):
     assert all(path.stat().st_mtime_ns == moment for path, moment in moments.items())
     assert len(list(runs.glob("*/summary.json"))) == 5
     lines = again.stdout.splitlines()
-    assert any(line.startswith("study of 5 settings") for line in lines) and "step = 0.5" in again.stdout
+    assert any(line.startswith("study of 6 settings") for line in lines) and "step = 4" in again.stdout
 
 
 def test_a_study_under_mpirun_is_refused(tmp_path, monkeypatch):
