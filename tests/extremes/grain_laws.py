@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 
-from grain_scenes import MASS, RADIUS, head_on
+import numpy as np
+from grain_scenes import MASS, RADIUS, discs, head_on
+from scipy.linalg import expm
 from trials import Axis, Finished, Measured, Trial
 
 STIFFNESS = 1e6
 STEPS = 400  # in half a period of a pair
+GRAVITY = 9.81
+FLOOR = {"width": 10.0, "height": 1.0, "walls": ["floor"]}
 
 
-def apart(run: Finished) -> float:
+def parting(run: Finished) -> float:
     """Speed [m/s] at which two discs on the x axis part."""
     left, right = run.grains("vx")
-    return right - left
+    return float(right - left)
 
 
 def released(overlap: float) -> Trial:
@@ -29,7 +33,97 @@ def released(overlap: float) -> Trial:
         full = overlap * RADIUS * omega
         # (omega dt)^2/8 = 8e-6, and where in its last step the contact ends; round-off of places near 0.01
         allowed = 1e-4 + 1e-15 / (overlap * RADIUS)
-        return [Measured(what="speed over that of the energy", value=apart(run) / full, expected=1.0, allowed=allowed)]
+        return [
+            Measured(what="speed over that of the energy", value=parting(run) / full, expected=1.0, allowed=allowed)
+        ]
+
+    return Trial(scene=scene, check=check)
+
+
+def rebound(restitution: float) -> Trial:
+    """Two discs meet that are to part with a share of their speed."""
+    omega = math.sqrt(2 * STIFFNESS / MASS)
+    # without tension e is about 1/(4 zeta^2) where zeta is large: the dashpot's own time is 1/(2 zeta omega)
+    sharper = max(1.0, 0.5 / math.sqrt(restitution)) if 0.0 < restitution < 1.0 else 1.0
+    step, speed = 0.005 / omega / sharper, 0.01
+    contact = {"normal_stiffness": STIFFNESS, "restitution": restitution}
+    scene = head_on(
+        speed=speed, gap=10 * speed * step, contact=contact, step=step, duration=20 * step + 2 * math.pi / omega
+    )
+
+    def check(run: Finished) -> list[Measured]:
+        value = parting(run) / speed / restitution
+        # the dashpot sees a velocity late by half a step of 0.005: first order
+        return [Measured(what="speed over the one asked for", value=value, expected=1.0, allowed=0.02)]
+
+    return Trial(scene=scene, check=check)
+
+
+def on_floor(contact: dict[str, float], *, speed: float, spin: float, step: float, duration: float) -> dict:
+    """A disc that moves along the floor, which carries its weight."""
+    height = RADIUS - MASS * GRAVITY / contact["normal_stiffness"]
+    scene = discs([5.0, height, speed, 0.0, spin], contact=contact, step=step, duration=duration, box=FLOOR)
+    return scene | {"gravity": [0.0, -GRAVITY]}
+
+
+def sliding(friction: float) -> Trial:
+    """A disc starts to slide along the floor without spin."""
+    speed, duration = 0.1, 0.05
+    shear = 0.5 * STIFFNESS
+    contact = {"normal_stiffness": STIFFNESS, "tangential_stiffness": shear, "friction": friction}
+    contact |= {"tangential_damping": 2 * math.sqrt(shear * MASS / 3), "rolling_friction": 0.0}
+    scene = on_floor(contact, speed=speed, spin=0.0, step=1e-5, duration=duration)
+
+    def check(run: Finished) -> list[Measured]:
+        expected = max(2 / 3 * speed, speed - friction * GRAVITY * duration)
+        # rolling begins with a stretched spring: mu m g/k_t per time of its vibration at most, over v
+        value = float(run.grains("vx")[0])
+        return [Measured(what="speed [m/s]", value=value, expected=expected, allowed=1e-3 * speed)]
+
+    return Trial(scene=scene, check=check)
+
+
+def rolling(friction: float) -> Trial:
+    """A disc rolls along the floor with rolling friction and much friction."""
+    speed, duration, shear = 0.1, 0.05, 0.05 * STIFFNESS
+    spring = shear * RADIUS**2
+    contact = {"normal_stiffness": STIFFNESS, "tangential_stiffness": shear, "friction": 1e3}
+    contact |= {"rolling_friction": friction, "normal_damping": 0.0}
+    scene = on_floor(contact, speed=speed, spin=-speed / RADIUS, step=1e-5, duration=duration)
+    # x and r theta, a disc on two springs: theta'' = 2 r F/m + M/I
+    by_shear = shear / MASS * np.array([[1.0, 1.0], [2.0, 2.0]])
+    matrix = np.zeros((4, 4))
+    matrix[:2, 2:] = np.eye(2)
+    matrix[2:, :2] = -by_shear - np.diag([0.0, 2 * spring / MASS / RADIUS**2])
+    elastic = float((expm(matrix * duration) @ [0.0, 0.0, speed, -speed])[0])
+    moment = friction * RADIUS * MASS * GRAVITY
+    swing = speed / math.sqrt(spring / (1.5 * MASS * RADIUS**2))  # largest way, were there no limit
+    slows = 2 / 3 * friction * GRAVITY
+
+    def check(run: Finished) -> list[Measured]:
+        way = float(run.grains("x")[0]) - 5.0
+        if moment > 2 * spring * swing / RADIUS:
+            # lever arms are shorter by half the overlap, 3e-6 m of 0.01 m, in both springs and over many periods
+            return [Measured(what="way against the springs' [m]", value=way, expected=elastic, allowed=0.02 * swing)]
+        rolls = min(duration, speed / slows) if slows else duration
+        plastic = speed * rolls - 0.5 * slows * rolls**2
+        given = 2 * moment * RADIUS / spring + 1e-4 * speed * duration  # of the spring until its limit, and back
+        return [Measured(what="way [m]", value=way, expected=plastic, allowed=given)]
+
+    return Trial(scene=scene, check=check)
+
+
+def stiff(stiffness: float) -> Trial:
+    """Two discs meet at 1 m/s."""
+    omega = math.sqrt(2 * stiffness / MASS)
+    step = math.pi / omega / STEPS
+    contact = {"normal_stiffness": stiffness}
+    scene = head_on(speed=1.0, gap=10 * step, contact=contact, step=step, duration=(STEPS + 20) * step)
+
+    def check(run: Finished) -> list[Measured]:
+        # (omega dt)^2/8 = 8e-6 and the last step; overlaps of v/omega from places near 0.01
+        allowed = 1e-4 + 1e-15 * omega
+        return [Measured(what="speed of parting [m/s]", value=parting(run), expected=1.0, allowed=allowed)]
 
     return Trial(scene=scene, check=check)
 
@@ -42,6 +136,40 @@ AXES = (
         values=(1e-12, 1e-9, 1e-6, 1e-3, 0.1, 0.3, 0.49, 0.51, 0.9, 1.5, 1.999),
         trial=released,
         quick={1e-9: "right", 0.49: "right", 0.51: "refused"},
+        sharpen=1.01,
+    ),
+    Axis(
+        part="Grains",
+        name="Restitution",
+        text="Two discs meet, with the dashpot that the restitution asks for. Right: the speed at which they part.",
+        values=(-0.1, 0.0, 1e-300, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 0.1, 0.5, 0.9, 0.999999, 1.0, 1.000001),
+        trial=rebound,
+    ),
+    Axis(
+        part="Grains",
+        name="Friction",
+        text="A disc starts to slide along the floor. Right: it slows by mu g until it rolls at two thirds of its speed.",
+        values=(0.0, 1e-9, 1e-3, 0.01, 0.1, 1.0, 1e3, 1e6, 1e12, 1e300),
+        trial=sliding,
+        quick={0.0: "right", 0.1: "right", 1e6: "right"},
+    ),
+    Axis(
+        part="Grains",
+        name="Rolling friction",
+        text="A disc rolls along the floor. Right: it slows by 2/3 mu_r g, or swings on the springs of the contact where "
+        "these never reach the limit.",
+        values=(0.0, 1e-6, 1e-3, 0.01, 0.1, 0.3, 1.0, 10.0, 1e3, 1e6, 1e300),
+        trial=rolling,
+        quick={0.0: "right", 0.1: "right", 1e3: "right"},
+    ),
+    Axis(
+        part="Grains",
+        name="Normal stiffness [N/m]",
+        text="Two discs meet at 1 m/s, 400 steps a contact. Right: they part at 1 m/s. At 6283 N/m they overlap by half a "
+        "radius.",
+        values=tuple(10.0**k for k in range(2, 17, 2)),
+        trial=stiff,
+        quick={1e2: "stopped", 1e14: "right"},
         sharpen=1.01,
     ),
 )
