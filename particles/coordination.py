@@ -71,8 +71,9 @@ def side_by_side(angle: float) -> tuple[float, float]:
     spread = np.sin(side * angle) / math.sin(angle)
     turned = np.maximum(math.pi - (side - 1) * angle, 0.0)  # 2 a at most; tried where a turn is better
     held = 0.5 * (side + np.where(spread < 0.0, spread * np.cos(turned), spread))
-    both = held[:, None] + held[None]
-    return float(most), float(both[side[:, None] + side[None] <= most].max())
+    one = side[side <= most]
+    other = np.maximum.accumulate(held)[np.minimum(most - one, len(held) - 1)]
+    return float(most), float((held[one] + other).max())
 
 
 def in_sectors(free: float, fixed: float) -> tuple[float, float]:

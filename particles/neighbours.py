@@ -53,6 +53,8 @@ class ContactList:
     contact : ContactModel or ContactTable
         Decides which histories are kept.
     walls : list of Wall
+    smallest : float
+        Smallest radius [m].
     ledger : bool
         Whether the dashpot forces of the last step are kept for the energy ledger.
     period : (2,) of float or None
@@ -70,13 +72,14 @@ class ContactList:
         contact: Contact,
         walls: list[Wall],
         *,
+        smallest: float,
         ledger: bool,
         period: Period = (None, None),
         facets: FacetContacts | None = None,
         precision: str = "float64",
         skin_factor: float = 1.0,
     ) -> None:
-        self.contact, self.skin_factor = contact, skin_factor
+        self.contact, self.skin_factor, self.smallest = contact, skin_factor, smallest
         self.ledger, self.precision = ledger, precision
         self.period, self.facets = period, facets
         self.skin = 0.0
@@ -86,8 +89,8 @@ class ContactList:
 
     @property
     def reach2(self) -> float:
-        """Square of the displacement at which the list must be made anew [m2]."""
-        return (0.5 * self.skin) ** 2
+        """Square of the displacement at which the list must be made anew [m2], at most half the smallest radius."""
+        return (0.5 * min(self.skin, self.smallest)) ** 2
 
     def rebuild(self, grains: Grains, dt: float, *, sort: bool = True) -> None:
         """List near pairs and walls, carry the histories over; before, if asked, sort the free grains by cell."""
@@ -251,7 +254,7 @@ class ContactList:
 
     def _require_apart(self, grains: Grains) -> None:
         a, b = self.pairs.owner, self.pairs.partner
-        same = np.nonzero((grains.x[a] == grains.x[b]) & (grains.y[a] == grains.y[b]))[0]
+        same = np.nonzero((grains.x[a] - grains.x[b]) ** 2 + (grains.y[a] - grains.y[b]) ** 2 == 0.0)[0]
         if len(same):
             first, second = grains.number[a[same[0]]], grains.number[b[same[0]]]
             raise ParticleError(f"grains {first} and {second} have the same centre: move one of them")

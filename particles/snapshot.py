@@ -46,7 +46,7 @@ class Snapshot:
         listing = system.list
         if self._lists[0] is not listing.pairs:
             self._steady = _copied(self._steady, self._of_lists())
-        self._counters = (system.steps_done, system.rebuilds, listing.skin)
+        self._counters = (system.steps_done, system.rebuilds, listing.skin, system.passage)
         self._lists = (listing.pairs, listing.walls, None if system.facets is None else system.facets.arrays)
         self._moving = _copied(self._moving, self._of_steps())
 
@@ -57,7 +57,7 @@ class Snapshot:
         system.list.pairs, system.list.walls, facets = self._lists
         if facets is not None:
             system.facets.arrays = facets
-        system.steps_done, system.rebuilds, system.list.skin = self._counters
+        system.steps_done, system.rebuilds, system.list.skin, system.passage = self._counters
         if sorted_again:
             _put(self._steady, self._of_lists())
         _put(self._moving, self._of_steps())

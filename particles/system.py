@@ -25,6 +25,7 @@ from particles.kernels.layout import (
 )
 from particles.kernels.motion import kick
 from particles.neighbours import LISTS_PER_SORT, ContactList, block_starts
+from particles.passing import Passage, deepest_passage
 from particles.periodic import checked_period
 from particles.shaking import Shaking
 from particles.snapshot import Snapshot
@@ -92,6 +93,11 @@ class ParticleSystem:
     threads : int
         The same bits for any number.
 
+    Attributes
+    ----------
+    passage : Passage
+        The deepest overlap met so far where a new list was made; centres do not pass each other unseen.
+
     Raises
     ------
     ParticleError
@@ -154,15 +160,10 @@ class ParticleSystem:
         if facets is not None and self.period != (None, None):
             raise ParticleError("facets do not go together with periodic sides: leave out one of them")
         self.facets = None if facets is None else FacetContacts(facets, contact, ledger=ledger)
-        self.list = ContactList(
-            contact,
-            list(walls),
-            ledger=ledger,
-            period=self.period,
-            facets=self.facets,
-            precision=precision,
-            skin_factor=skin_factor,
-        )
+        options = {"ledger": ledger, "period": self.period, "facets": self.facets}
+        options |= {"precision": precision, "skin_factor": skin_factor, "smallest": float(grains.radius.min())}
+        self.list = ContactList(contact, list(walls), **options)
+        self.passage = Passage()
         self._started = False
 
     # -- stepping -----------------------------------------------------------------------------
@@ -214,6 +215,7 @@ class ParticleSystem:
             if not drifted:
                 return
             self._rebuild()
+            self.passage = deepest_passage(self.grains, self._arrays(), self.list, self.time_step, self.passage)
 
     def _rebuild(self) -> None:
         self.list.rebuild(self.grains, self.time_step, sort=self.rebuilds % LISTS_PER_SORT == 0)
@@ -392,7 +394,7 @@ class ParticleSystem:
             self.facets.restore(own)
         self.list.skin = float(saved["skin"])
         self.steps_done, self.rebuilds, started = (int(c) for c in saved["counters"])
-        self._started = bool(started)
+        self._started, self.passage = bool(started), Passage()
         if self.ledger is not None:
             self.ledger.loss[:] = saved["losses"]
             self.ledger.prescribed_work[:] = saved["prescribed_work"]

@@ -6,6 +6,7 @@ import numpy as np
 
 from particles.contact import Contact
 from particles.errors import ParticleError
+from particles.kernels.slopes import Touching, slopes
 from particles.state import Grains
 
 SOURCE_FACTOR = 0.5
@@ -36,11 +37,48 @@ def source_bound(grains: Grains, contact: Contact, *, factor: float = SOURCE_FAC
     return factor * bound
 
 
+def braking_time(grains: Grains, contact: Contact) -> float:
+    """Shortest time ``m_eff/c_n`` [s] in which the dashpot of a contact brakes; infinite without dashpots.
+
+    Of the lightest grains of each material with each other, with walls and with prescribed grains. A step
+    longer than this turns the motion about by the dashpot alone, up to a rebound faster than the impact, and
+    the energy ledger books what comes from nothing as a negative loss.
+    """
+    masses = [
+        np.sort(grains.mass[: grains.n_free][grains.material[: grains.n_free] == a]) for a in range(contact.materials)
+    ]
+    rows = []
+    for a, own in enumerate(masses):
+        for b, others in enumerate(masses):
+            partners = own[1:] if a == b else others
+            if len(own):
+                rows += [(own[0], np.inf, a, b), *((own[0], partner, a, b) for partner in partners[:1])]
+    if not rows:
+        return math.inf
+    mass, partner, i, j = np.array(rows).T
+    radius = float(grains.radius[: grains.n_free].min())
+    size = np.full(len(rows), radius)
+    inverse_mass = 1.0 / mass + 1.0 / partner
+    asked = Touching(
+        ALLOWED_OVERLAP * size, size, inverse_mass, np.zeros(len(rows)), i.astype(np.int64), j.astype(np.int64)
+    )
+    k, c = np.empty((len(rows), 3)), np.empty((len(rows), 3))
+    slopes(contact.numbers(), asked, k, c)
+    fastest = float((c[:, 0] * inverse_mass).max())
+    return 1.0 / fastest if fastest > 0.0 else math.inf
+
+
 def require_stable(grains: Grains, contact: Contact, time_step: float) -> None:
-    """Refuse a step above ``2 sqrt(m/k_n)``, the limit of a single contact, which no grain survives."""
+    """Refuse a step above ``2 sqrt(m/k_n)``, which no grain in contact survives, or above `braking_time`."""
     limit = source_bound(grains, contact, factor=2.0)
     if time_step > limit:
         raise ParticleError(
             f"time step {time_step:g} s is above the limit {limit:g} s of a single contact: "
             f"take at most {source_bound(grains, contact):g} s"
+        )
+    brakes = braking_time(grains, contact)
+    if time_step > brakes:
+        raise ParticleError(
+            f"time step {time_step:g} s is above m_eff/c_n = {brakes:g} s, in which the normal dashpot stops two grains, "
+            f"and would throw them back; take at most {0.1 * brakes:g} s, or less normal damping"
         )

@@ -18,6 +18,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+LARGEST_SINGLE = float(np.finfo(np.float32).max)
 # XDMF's name of each cell and its number of nodes
 CELLS = {
     "point": ("Polyvertex", 1),
@@ -139,9 +140,9 @@ def _refer(element: ET.Element, data: h5py.Dataset, path: Path) -> None:
 
 
 def _in_space(values: NDArray[Any]) -> NDArray[Any]:
-    """Single precision; vectors get a third component, which ParaView needs to treat them as such."""
+    """Single precision where that holds them; vectors get a third component, which ParaView needs to treat them as such."""
     array = np.asarray(values)
-    if array.dtype.kind == "f":
+    if array.dtype.kind == "f" and not np.abs(array).max(initial=0.0) > LARGEST_SINGLE:
         array = array.astype(np.float32)
     if array.ndim == 2 and array.shape[1] == 2:
         array = np.column_stack([array, np.zeros(len(array), array.dtype)])

@@ -47,6 +47,17 @@ def name_of_node(model: Model, node: int) -> str:
     return f"boundary node {node} at ({x:.4g}, {y:.4g}) m"
 
 
+def passage_of(model: Model) -> str:
+    """The two that were deepest in each other where a new contact list was made."""
+    system, passage = model.particles, model.particles.passage
+
+    def named(number: int) -> str:
+        return name_of_grain(model, int(np.nonzero(system.grains.number == number)[0][0]))
+
+    partner = f"wall {system.walls[passage.wall].name!r}" if passage.partner is None else named(passage.partner)
+    return f"{named(passage.grain)} and {partner}"
+
+
 def liveliest_node(model: Model) -> str:
     """The boundary node with the largest acceleration."""
     size = np.hypot(*model.structure.boundary_acceleration.T)

@@ -21,6 +21,11 @@ ROUGH = 32  # strides in which the way from the last good look is first gone aga
 LONGEST_WAIT = 64  # looks, before grains that turn about for another reason are looked at again
 FAULTS = (ParticleError, StructureError, LeitoError)  # what a step may raise because the run is unstable
 
+FROM_START = {  # what to change about a scene that is wrong from its start
+    "contact": "place them farther apart, or make the contact stiffer",
+    "step": "take a smaller time.step, or smaller numbers where it starts",
+}
+
 
 class Good(NamedTuple):
     """A state that all watchdogs have passed."""
@@ -74,7 +79,8 @@ class Guard:
         self._good = Good(model.snapshot(), seen, model.steps_done)
         sign = self._sign(seen)
         if sign is not None:
-            raise watchdog.Unstable(f"t = {model.time:g} s, before the first step: {sign.what}; change the scene")
+            change = FROM_START.get(sign.remedy, "change the scene")
+            raise watchdog.Unstable(f"t = {model.time:g} s, before the first step: {sign.what}; {change}")
 
     def advance(self, steps: int) -> None:
         """Take steps; one that cannot be taken ends the run."""

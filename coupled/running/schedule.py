@@ -14,8 +14,8 @@ class Every:
 
     @classmethod
     def seconds(cls, seconds: float, window: float, last: int) -> Every:
-        """The nearest whole number of steps of length `window` [s], at least one."""
-        return cls(max(1, round(seconds / window)), last)
+        """The nearest whole number of steps of length `window` [s], at least one and at most `last`."""
+        return cls(max(1, round(min(seconds / window, last))), last)
 
     def due(self, step: int) -> bool:
         return step % self.interval == 0 or step == self.last

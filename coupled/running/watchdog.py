@@ -60,6 +60,7 @@ def first_sign(model: Model, seen: Glance, since: Glance) -> Sign | None:
         _not_finite(model, seen)
         or body_sign(model, seen.overturned, seen.beyond)
         or _too_deep(model, seen)
+        or _passed(model)
         or _too_fast(model, seen)
         or _energy_made(model, seen, since)
         or _energy_made_in_all(model, seen)
@@ -85,9 +86,22 @@ def _too_deep(model: Model, seen: Glance) -> Sign | None:
     if seen.look is None or not seen.look.deepest > DEEPEST_OVERLAP:
         return None
     return Sign(
-        f"the overlap of {culprit.touch_of(model, seen.look.deepest_at)} is {seen.look.deepest:.2f} of the smaller "
+        f"the overlap of {culprit.touch_of(model, seen.look.deepest_at)} is {seen.look.deepest:.3g} of the smaller "
         f"radius, above {DEEPEST_OVERLAP:g}",
         "contact",
+    )
+
+
+def _passed(model: Model) -> Sign | None:
+    """What was too deep between two looks, or within a step."""
+    if model.particles is None or not model.particles.passage.depth > DEEPEST_OVERLAP:
+        return None
+    passage = model.particles.passage
+    within = f", going {passage.stride:.3g} of it in one step" if passage.stride > FARTHEST_STEP else ""
+    return Sign(
+        f"{culprit.passage_of(model)} have overlapped by {passage.depth:.3g} of the smaller radius{within}, more than "
+        f"{DEEPEST_OVERLAP:g}",
+        "step" if within else "contact",
     )
 
 
@@ -110,25 +124,31 @@ def _energy_made(model: Model, seen: Glance, since: Glance) -> Sign | None:
     now, then = seen.balance, since.balance
     made = now.error - then.error
     turned = 0.5 * sum(abs(now.entries[name] - then.entries.get(name, 0.0)) for name in now.entries)
-    moving = sum(abs(v) for name, v in now.entries.items() if name.endswith(("kinetic", "rotational")))
-    elastic = sum(v for name, v in now.entries.items() if name.endswith(("_springs", "_strain")))
+    present = _present(now)
     stored = sum(abs(value) for value in now.entries.values())
     residual = now.interface_residual - then.interface_residual
-    at_interface = residual > 0.5 * made > 0.5 * AT_INTERFACE * (moving + elastic)
+    at_interface = residual > 0.5 * made > 0.5 * AT_INTERFACE * present
     if not made > NOISE * stored:
         return None
-    if not (at_interface or made > max(ENERGY_MADE * turned, OF_PRESENT * (moving + elastic))):
+    if not (at_interface or made > max(ENERGY_MADE * turned, OF_PRESENT * present)):
         return None
     return _energy_sign(model, made, made / turned, seen, then)
 
 
 def _energy_made_in_all(model: Model, seen: Glance) -> Sign | None:
-    """Energy from nothing since the start."""
+    """Energy from nothing since the start: a rebound without loss leaves all as it was and has turned nothing over."""
     balance = seen.balance
     stored = sum(abs(value) for value in balance.entries.values())
-    if not balance.error > max(ENERGY_MADE * balance.throughput, NOISE * stored):
+    least = max(ENERGY_MADE * balance.throughput, NOISE * stored, OF_PRESENT * _present(balance))
+    if not balance.error > least:
         return None
     return _energy_sign(model, balance.error, balance.relative_error, seen, None)
+
+
+def _present(balance: Balance) -> float:
+    """Kinetic and elastic energy [J/m]."""
+    moving = sum(abs(v) for name, v in balance.entries.items() if name.endswith(("kinetic", "rotational")))
+    return moving + sum(v for name, v in balance.entries.items() if name.endswith(("_springs", "_strain")))
 
 
 def _energy_sign(model: Model, made: float, share: float, seen: Glance, then: Balance | None) -> Sign:

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from coupled.scene.types import NonNegative, Number, Positive, Table
 
-Restitution = Annotated[Number, Field(gt=0, le=1)]
+Restitution = Annotated[Number, Field(ge=1e-12, le=1)]  # as `particles.contact.recipe`
 PoissonsRatio = Annotated[Number, Field(gt=-1, le=0.5)]
 End = Literal["zero_force", "zero_overlap"]
 END = (

@@ -22,7 +22,7 @@ class LinearSpringDashpot:
     damping : float
         c_n [N s/m], >= 0; one value for all contacts.
     restitution : float, optional
-        e [-], above 0 and not above 1, instead of `damping`: every pair gets the dashpot
+        e [-], from 1e-12 to 1, instead of `damping`: every pair gets the dashpot
         ``2 zeta sqrt(m_eff k_n)`` that makes it rebound with e (`recipe.damping_ratio`). m_eff is
         ``m_i m_j / (m_i + m_j)``, at a wall or a prescribed grain the mass of the free one.
     may_pull : bool
@@ -80,7 +80,7 @@ class HertzSpringDashpot:
         E* [N/m2 per unit thickness], > 0: then ``k_h = 4/3 E* sqrt(R_eff)`` with
         ``R_eff = r_i r_j / (r_i + r_j)``, at a wall r_i. `of_materials` computes it.
     restitution : float
-        e [-], above 0 and not above 1, kept exactly by every pair, with `may_pull` or without.
+        e [-], from 1e-12 to 1, kept exactly by every pair, with `may_pull` or without.
     may_pull : bool
         As for `LinearSpringDashpot`.
 

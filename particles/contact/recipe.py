@@ -6,6 +6,8 @@ from scipy.optimize import brentq
 
 from particles.errors import ParticleError, require
 
+LEAST_RESTITUTION = 1e-12  # of a dashpot 5e5 times critical
+
 
 def stiffness_from_drop_height(*, mass: float, gravity: float, drop_height: float, largest_overlap: float) -> float:
     """Normal stiffness at which a fall from `drop_height` [m] overlaps by `largest_overlap` [m].
@@ -39,9 +41,9 @@ def damping_from_restitution(*, restitution: float, effective_mass: float, stiff
 
 
 def damping_ratio(restitution: float, *, may_pull: bool) -> float:
-    """Dashpot over critical dashpot at which a contact rebounds with `restitution`, above 0 and not above 1."""
-    if not 0.0 < restitution <= 1.0:
-        raise ParticleError(f"restitution = {restitution:g} must lie above 0 and not above 1")
+    """Dashpot over critical dashpot at which a contact rebounds with `restitution`, from 1e-12 to 1."""
+    if not LEAST_RESTITUTION <= restitution <= 1.0:
+        raise ParticleError(f"restitution = {restitution:g} must lie between {LEAST_RESTITUTION:g} and 1")
     if restitution == 1.0:
         return 0.0
     if may_pull:

@@ -4,5 +4,6 @@ import grain_laws
 import grain_motion
 import grain_sizes
 import grain_time
+import scene_numbers
 
-AXES = (*grain_time.AXES, *grain_laws.AXES, *grain_sizes.AXES, *grain_motion.AXES)
+AXES = (*grain_time.AXES, *grain_laws.AXES, *grain_sizes.AXES, *grain_motion.AXES, *scene_numbers.AXES)

@@ -80,7 +80,8 @@ def _end(trial: Trial, said: Said, out: Path) -> tuple[str, str, Measured | None
     if sentence == last or len(sentence) < 20:
         return "mute", text, None
     if not (out / BEFORE_FAILURE).exists():
-        return ("mute" if (out / checkpoint.NAME).exists() else "refused"), sentence, None
+        ran = trial.prepare is None and (out / checkpoint.NAME).exists()
+        return ("no state" if ran else "refused"), sentence, None
     try:
         checkpoint.load(out / BEFORE_FAILURE)
     except LeitoError as error:
@@ -100,8 +101,9 @@ def _ended(trial: Trial, run: Finished, text: str) -> tuple[str, str, Measured |
         expected=time["duration"],
         allowed=0.5000001 * run.summary["time_step"] * trial.scene.get("interface", {}).get("substeps", 1),
     )
-    numbers = [*([] if "stop_at_rest" in time else [whole]), *trial.check(run)]
-    worst = max(numbers[::-1], key=lambda number: number.share)
+    if "stop_at_rest" not in time and whole.share > 1.0:
+        return "wrong", notes, whole
+    worst = max(trial.check(run), key=lambda number: number.share)
     return ("right" if worst.share <= 1.0 else "wrong"), notes, worst
 
 

@@ -68,7 +68,7 @@ BAD: dict[str, tuple[Callable[[], object], str]] = {
     "jitter": (lambda: lattice([(0.1, 3)], 1.0, width=1.0, jitter=2.0), "jitter = 2 must lie between 0 and 1"),
     "restitution": (
         lambda: recipe.damping_from_restitution(restitution=1.5, effective_mass=1.0, stiffness=1.0, may_pull=False),
-        "restitution = 1.5 must lie above 0 and not above 1"),
+        "restitution = 1.5 must lie between 1e-12 and 1"),
 }  # fmt: skip
 
 

@@ -22,6 +22,7 @@ def check_step(scene: Scene) -> None:
     """
     grains, contact = scene.first_grains, scene.contact
     _check_auto(scene)
+    _check_global_damping(scene)
     if grains is None or contact is None or contact.normal_stiffness is None:
         return
     mass = min([grains.smallest_mass, *(intruder.mass for intruder in scene.intruders)])
@@ -40,6 +41,21 @@ def check_step(scene: Scene) -> None:
             f"is above the stability limit {formula} = {limit:.3g} s of the smallest grain on one "
             f"contact; choose at most {limit / 4:.3g} s",
         )
+
+
+def _check_global_damping(scene: Scene) -> None:
+    """``v += -alpha dt v`` must not turn velocities about."""
+    if scene.damping is None:
+        return
+    for name in ("translational", "rotational"):
+        value = getattr(scene.damping, name)
+        if value * scene.time.least_step >= 1.0:
+            raise refusal(
+                f"damping.{name}",
+                value,
+                f"takes more than all of a velocity within time.step = {scene.time.step:g} s; choose less than "
+                f"{0.1 / scene.time.step:.3g} 1/s, or a smaller step",
+            )
 
 
 def _check_auto(scene: Scene) -> None:

@@ -9,6 +9,9 @@ from coupled.scene.refusal import missing, refusal
 if TYPE_CHECKING:
     from coupled.scene.scene import Scene
 
+ROUND_OFF = 1e-9
+MOST_STEPS = 1e15  # beyond it steps are less than four round-offs of the time apart
+
 
 def check_whole(scene: Scene) -> None:
     """Check that there is something to compute and that no table hangs in the air."""
@@ -47,6 +50,11 @@ def check_output(scene: Scene) -> None:
     if time.least_step > time.duration:
         reason = f"is longer than time.duration = {time.duration:g} s; choose a smaller step"
         raise refusal("time.step", time.step, reason)
+    if time.least_step * MOST_STEPS < time.duration and time.least_step > 0.0:
+        reason = (
+            f"is more than {MOST_STEPS:g} steps of {time.step:g} s, whose times are no longer told apart; shorten it"
+        )
+        raise refusal("time.duration", time.duration, reason)
     if time.stop_at_rest is not None and (scene.grains is None or not any(scene.gravity)):
         reason = "measures free grains under gravity; remove it, or add [grains] and gravity"
         raise refusal("time.stop_at_rest", time.stop_at_rest, reason)
@@ -55,3 +63,6 @@ def check_output(scene: Scene) -> None:
         if value is not None and value < time.least_step:
             reason = f"is shorter than time.step = {time.step:g} s; choose at least one step"
             raise refusal(f"output.{name}", value, reason)
+    if output.frames_per_second * time.least_step > 1.0 + ROUND_OFF:
+        reason = f"is more than one frame in a time.step of {time.step:g} s; choose at most {1.0 / time.step:.6g}"
+        raise refusal("output.frames_per_second", output.frames_per_second, reason)
