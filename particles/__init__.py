@@ -17,13 +17,14 @@ from particles.contact import (
 from particles.crowding import packing_limit
 from particles.errors import ParticleError
 from particles.facets import Facets
+from particles.look import ContactLook
 from particles.network import StiffnessNetwork, stiffness_network
 from particles.shaking import Shaking
 from particles.sample import sample_limit
 from particles.snapshot import Snapshot
 from particles.stability import StepLimit, sharp_limit
 from particles.state import Grains
-from particles.system import ContactLook, ParticleSystem, continued
+from particles.system import ParticleSystem, continued
 from particles.timestep import source_bound
 from particles.walls import Wall, box
 

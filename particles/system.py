@@ -1,7 +1,6 @@
 """Discs in motion: state, contacts, walls and the leapfrog, behind one object."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numba
@@ -24,34 +23,18 @@ from particles.kernels.layout import (
     ShakingNumbers,
 )
 from particles.kernels.motion import kick
+from particles.look import ContactLook
 from particles.neighbours import LISTS_PER_SORT, ContactList, block_starts
 from particles.passing import Passage, deepest_passage
 from particles.periodic import checked_period
 from particles.shaking import Shaking
 from particles.snapshot import Snapshot
 from particles.state import PRECISIONS, Grains
+from particles.threads import use_threads
 from particles.walls import Wall
 
 SCHEMES = ("leapfrog", "velocity_verlet")
 LOSSES = ("normal_dashpot", "tangential_dashpot", "sliding", "rolling_dashpot", "rolling_slip", "global_damping")
-
-
-@dataclass(frozen=True)
-class ContactLook:
-    """The contacts at one moment: energies of the springs [J/m], counts, the deepest overlap.
-
-    `overlap` (n,) [m] is the sum over the contacts of each grain, `contacts` (n,) their number;
-    `deepest` is the largest overlap over the smaller radius, at grain `deepest_at`.
-    """
-
-    normal_energy: float
-    tangential_energy: float
-    rolling_energy: float
-    count: int
-    deepest: float
-    deepest_at: int
-    overlap: NDArray[np.float64]
-    contacts: NDArray[np.int64]
 
 
 class ParticleSystem:
@@ -429,12 +412,3 @@ def _shaking_of(shaking: Shaking | None, walls: Sequence[Wall]) -> ShakingNumber
             else "shaking moves no wall: give Wall(..., shaken=True)"
         )
     return None if shaking is None else shaking.numbers(walls)
-
-
-def use_threads(threads: int) -> int:
-    """Set the number of threads of the compiled loops, at most what the machine lends."""
-    if threads < 1:
-        raise ParticleError(f"threads = {threads} must be at least 1")
-    allowed = min(threads, numba.config.NUMBA_NUM_THREADS)
-    numba.set_num_threads(allowed)
-    return allowed

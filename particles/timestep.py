@@ -79,6 +79,6 @@ def require_stable(grains: Grains, contact: Contact, time_step: float) -> None:
     brakes = braking_time(grains, contact)
     if time_step > brakes:
         raise ParticleError(
-            f"time step {time_step:g} s is above m_eff/c_n = {brakes:g} s, in which the normal dashpot stops two grains, "
-            f"and would throw them back; take at most {0.1 * brakes:g} s, or less normal damping"
+            f"time step {time_step:g} s is above m_eff/c_n = {brakes:g} s, in which the normal dashpot stops two "
+            f"grains, and would throw them back; take at most {0.1 * brakes:g} s, or less normal damping"
         )

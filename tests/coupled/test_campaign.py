@@ -23,7 +23,7 @@ from coupled.templates import write_template
 
 QUICK = ["time.duration=0.05", "output.figures=false", "output.frames_per_second=0"]
 LONG = ["time.duration=20.0", "output.checkpoint_interval=0.02", *QUICK[1:]]
-UNSTABLE = ["time.step=4.5e-4", "time.duration=0.5", "output.history_interval=0.002"]
+UNSTABLE = ["time.step=4e-4", "time.duration=0.5", "output.history_interval=0.002"]
 
 
 @pytest.fixture(scope="module")

@@ -86,7 +86,7 @@ BAD: dict[str, Case] = {
         "contact.normal_damping",
         ("contact.restitution", "keep one"),
     ),
-    "no rebound": (GRAINS, {"contact.restitution": 0.0}, "contact.restitution", ("greater than 0",)),
+    "no rebound": (GRAINS, {"contact.restitution": 0.0}, "contact.restitution", ("at least 1e-12",)),
     "end of no restitution": (
         GRAINS,
         {"contact.restitution_at": "zero_overlap"},

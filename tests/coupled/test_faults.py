@@ -70,7 +70,7 @@ def test_a_contact_that_is_too_soft_is_named_at_the_step_in_which_it_gets_too_de
 def test_energy_from_nothing_is_seen_and_its_line_named(tmp_path: Path) -> None:
     """A step above the limit of grains with several contacts; the state before it is one of the sound way."""
     path = write_template("grains", tmp_path / "grains.toml")
-    sets = ["time.step=4.5e-4", "output.frames_per_second=0", "output.figures=false"]
+    sets = ["time.step=4e-4", "output.frames_per_second=0", "output.figures=false"]
     scene = load_scene(path, sets)
     said = failure(scene, tmp_path / "run")
     assert re.search(r"have come from nothing, \d+% of the energy turned over \(grains_kinetic changed by \+", said)

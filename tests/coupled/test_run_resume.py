@@ -116,7 +116,7 @@ def test_a_full_disk_is_one_sentence_and_costs_nothing(
 def test_a_run_that_explodes_stops_itself(tmp_path: Path) -> None:
     """A step below the limit of one contact and above that of grains with several: a watchdog ends it."""
     path = write_template("grains", tmp_path / "grains.toml")
-    scene = load_scene(path, ["time.step=4.5e-4", "output.history_interval=0.002", "output.figures=false"])
+    scene = load_scene(path, ["time.step=4e-4", "output.history_interval=0.002", "output.figures=false"])
     with pytest.raises(Unstable, match="t = .* s, the run is unstable: .* To change: take time.step"):
         run_scene(scene, out=tmp_path / "run", threads=1, progress=False)
     assert not (tmp_path / "run" / "checkpoint.h5").exists(), "no checkpoint of a broken state"

@@ -164,7 +164,7 @@ AXES = (
         text="The same. Right: its height, and the number of frames.",
         values=INTERVALS,
         trial=written("frames_per_second", lambda run: len(list((run.folder / "frames").glob("grains.*.h5")))),
-        quick={0.1: "right", 1e9: "right"},
+        quick={0.1: "refused", 1.0: "right", 1e9: "right"},
     ),
     Axis(
         part="Grains",
