@@ -10,7 +10,7 @@ import numpy as np
 
 from coupled.measuring.findings import Findings
 from coupled.measuring.record import Floats
-from coupled.measuring.rises import Rise, height_over_floor
+from coupled.measuring.rises import LargeDeviations, Rise, height_over_floor
 from coupled.measuring.states import Rolls
 from coupled.report.drawing import Axes, Figure, NullFormatter, plt
 from particles.measures import portrait, strobe
@@ -142,7 +142,8 @@ def profiles(found: Sequence[Findings]) -> Figure | None:
         panels[2].set_xscale("log")
         panels[2].xaxis.set_minor_formatter(NullFormatter())
     (panels[0] if len(shown) > 1 else panels[2]).legend(fontsize=7, frameon=False)
-    figure.suptitle(f"{_title(found)}: means of {sum(one.profiles.frames for one in shown)} frames", fontsize=10)
+    frames = sum(one.profiles.frames for one in shown)
+    figure.suptitle(f"{_title(found)}: means of {frames} frame{'s' * (frames > 1)}", fontsize=10)
     return figure
 
 
@@ -229,7 +230,7 @@ def large_deviation(one: Findings) -> Figure | None:
         )
     chosen = found.tilted[found.settled or found.lengths[-1]]
     known = np.isfinite(chosen.rate)
-    left.plot(chosen.v[known], chosen.rate[known], "r-", lw=1.4, label="Legendre transform")
+    left.plot(chosen.v[known], chosen.rate[known], "r-", lw=1.4, label=_transform_label(found))
     left.set(xlabel=_length([one], "rise per period v"), ylabel="I(v)")
     if not known.any() and not any(np.isfinite(curve.rate).any() for curve in found.curves):
         left.text(0.5, 0.5, "too few windows", ha="center", va="center", transform=left.transAxes, fontsize=9)
@@ -238,6 +239,12 @@ def large_deviation(one: Findings) -> Figure | None:
     _draw_symmetry(right, one, rise, tones)
     figure.suptitle(f"{one.group.label}: {rise.name}, {len(rise.samples)} samples", fontsize=10)
     return figure
+
+
+def _transform_label(found: LargeDeviations) -> str:
+    if found.settled is None:
+        return f"Legendre transform, n = {found.lengths[-1]}, not settled"
+    return f"Legendre transform, n = {found.settled}"
 
 
 def _draw_symmetry(axes: Axes, one: Findings, rise: Rise, tones: np.ndarray) -> None:

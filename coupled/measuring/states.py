@@ -33,7 +33,8 @@ PROFILES = ("packing", "coordination", "temperature", "spin_temperature")
 class Profiles:
     """Over the heights y (k,) of strips above the floor [m]: means and half widths (k,) by the names of `PROFILES`.
 
-    Packing and coordination [-]; temperatures [J/m] over the mass of a mean grain, [m2/s2].
+    Packing and coordination [-], of free grains alone: a structure leaves a hole. Temperatures over the mass of a mean
+    grain [m2/s2].
     """
 
     y: Floats
