@@ -27,7 +27,11 @@ def laid_out(scene: Scene) -> dem.Grains:
         places = _intruder_places(scene, float(rows[:, 1].min() + rows[:, 1].max()) / 2.0)
         return _with_intruders(scene, rows[:, :2], radius, places, rows[:, 2:])
     places = _intruder_places(scene, _middle_of_lattice(scene))
-    holes = [(x, y, intruder.radius) for (x, y), intruder in zip(places, scene.intruders, strict=True)]
+    holes = [
+        (x + shift, y, intruder.radius)
+        for (x, y), intruder in zip(places, scene.intruders, strict=True)
+        for shift in _shifts(scene)
+    ]
     loose = lattice(
         sizes, table.density, width=scene.box.width, spacing=table.spacing, jitter=table.jitter, seed=table.seed,
         holes=holes,
@@ -93,6 +97,12 @@ def _intruder_places(scene: Scene, middle: float) -> Floats:
         y = max(middle, intruder.radius) if intruder.y == MIDDLE else intruder.y
         places.append((x, y))
     return np.array(places, float).reshape(-1, 2)
+
+
+def _shifts(scene: Scene) -> tuple[float, ...]:
+    """How far a disc of the box stands from its images in x [m], itself the first."""
+    period = scene.box.period[0]
+    return (0.0,) if period is None else (0.0, -period, period)
 
 
 def _with_intruders(scene: Scene, place: Floats, radius: Floats, places: Floats, motion: Floats) -> dem.Grains:

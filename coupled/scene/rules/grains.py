@@ -69,7 +69,7 @@ def _check_positions(grains: Grains, box: Box | None) -> None:
     if box is None:
         return
     _check_size(grains, box)
-    radii = [size.largest for size in grains.sizes for _ in range(size.count)]
+    radii = [size.smallest for size in grains.sizes for _ in range(size.count)]
     margin_x, margin_y = (0.0 if axis in box.periodic else 1.0 for axis in "xy")
     for index, (row, radius) in enumerate(zip(grains.positions, radii, strict=True)):
         x, y = row[:2]
