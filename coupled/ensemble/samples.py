@@ -28,6 +28,7 @@ def samples_of(
     *,
     vary: Sequence[str] = (),
     overrides: Sequence[str] = (),
+    accuracy: str | None = None,
     out: Path,
     threads: int = 1,
     shared: Path | None = None,
@@ -48,7 +49,7 @@ def samples_of(
     found = []
     for combination in grid(vary, overrides):
         sets = [*overrides, *combination.overrides]
-        first = load_scene(scene, sets)
+        first = load_scene(scene, sets, accuracy=accuracy)
         place = out / combination.label if combination.values else out
         key = seed_key(first)
         if key is None:
@@ -59,7 +60,8 @@ def samples_of(
         if any(key == varied for varied, _ in combination.values):
             raise LeitoError(f"--vary {key}: the seeds are varied by --samples; --set {key}=1 chooses the first.")
         for seed in range(first.first_grains.seed, first.first_grains.seed + count):
-            found.append((combination, seed, load_scene(scene, [*sets, f"{key}={seed}"]), place / f"seed_{seed}"))
+            loaded = load_scene(scene, [*sets, f"{key}={seed}"], accuracy=accuracy)
+            found.append((combination, seed, loaded, place / f"seed_{seed}"))
     return [
         Sample(
             combination=combination,

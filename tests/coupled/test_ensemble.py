@@ -183,6 +183,13 @@ def test_the_seed_of_a_bed_below_is_the_one_that_changes(tmp_path: Path) -> None
     assert [sample.task.scene.bed.grains.seed for sample in samples] == [7, 8, 9]
 
 
+def test_a_preset_holds_for_every_sample_and_may_be_varied(grains: Path, tmp_path: Path) -> None:
+    samples = samples_of(grains, 2, accuracy="draft", vary=["contact.friction=0.1,0.8"], out=tmp_path)
+    assert [sample.task.scene.preset.name for sample in samples] == ["draft"] * 4
+    samples = samples_of(grains, 1, vary=["accuracy=draft,reference"], out=tmp_path)
+    assert [sample.task.scene.preset.name for sample in samples] == ["draft", "reference"]
+
+
 def test_values_may_be_lists_and_words() -> None:
     found = grid(["gravity=[0.0, -1.0],[0.0, -9.81]", "interface.exchange=predicted,iterated"])
     assert [combination.overrides for combination in found] == [
