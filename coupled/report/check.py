@@ -84,7 +84,23 @@ def _grain_rows(built: Built) -> list[Row]:
         return []
     n_free, n = system.grains.n_free, len(system.grains)
     rows = [("grains", "free, prescribed", f"{n_free}, {n - n_free}")]
-    return rows + contact_rows(built.scene)
+    return rows + _shaking_rows(built) + contact_rows(built.scene)
+
+
+def _shaking_rows(built: Built) -> list[Row]:
+    """The motion of the walls: amplitude, period, largest acceleration over gravity, largest velocity."""
+    motion, gravity = built.model.particles.shaking, math.hypot(*built.scene.gravity)
+    if motion is None:
+        return []
+    omega = 2.0 * math.pi / motion.period
+    rows = [
+        ("amplitude, period", f"{motion.amplitude:.4g} m, {motion.period:.6g} s"),
+        ("period in steps", f"{motion.period / built.scene.time.step:.6g}"),
+        ("largest velocity", f"{motion.amplitude * omega:.4g} m/s"),
+    ]
+    if gravity > 0.0:
+        rows.append(("Gamma", f"{motion.amplitude * omega**2 / gravity:.4g}"))
+    return [("shaking", *row) for row in rows]
 
 
 def _step_rows(limits: StepLimits, asked: Time) -> list[Row]:

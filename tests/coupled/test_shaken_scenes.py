@@ -77,7 +77,7 @@ def moved(shift: float, steps: int, start: np.ndarray) -> tuple[np.ndarray, Any]
 
 
 def test_nothing_depends_on_where_the_seam_lies() -> None:
-    """Friction springs across the seam, an intruder on it: the same motion but for round-off, which collisions let grow.
+    """Friction springs across the seam, an intruder on it: the same motion but for round-off, which grows.
 
     Sums of forces run in the order of the storage, which the seam changes: not the same bits.
     """
