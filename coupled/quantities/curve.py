@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import trapezoid
 
 from coupled.errors import QuantityError
 
@@ -65,7 +66,7 @@ class Curve:
 
     def mean(self) -> float:
         """Mean over time, by the trapezoidal rule."""
-        return float(np.trapz(self.value, self.time) / (self.time[-1] - self.time[0]))
+        return float(trapezoid(self.value, self.time) / (self.time[-1] - self.time[0]))
 
     def first_time_at(self, target: float) -> float:
         """The first time [s] at which the column is or passes `target`.

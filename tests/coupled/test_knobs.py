@@ -11,6 +11,7 @@ import pytest
 from bad_scenes import BEAM_ON_ROW, GRAINS, HERTZ, SURFACES, TUBE, Case, changed, require_refusal
 
 from coupled.build import build
+from coupled.limits_before import packing_limit_of, settled_limit_of
 from coupled.quantities import evaluate
 from coupled.running.run import run_scene
 from coupled.scene import Scene, load_scene
@@ -178,6 +179,19 @@ def test_step_fraction_is_one_of_the_sharp_limit(beds: dict[float, Path], factor
     built.model.particles = system
     limits = limits_of(built.model)
     assert limits.of_network == pytest.approx(0.8, rel=0.08)
+
+
+def test_hertz_has_the_limit_of_any_packing_and_light_intruders_lower_it() -> None:
+    """Hertz's spring has no limit but at an overlap; a light intruder with many neighbours moves faster than a grain."""
+    hertz = Scene.model_validate(HERTZ)
+    assert settled_limit_of(hertz) == packing_limit_of(hertz)
+    bare = changed(GRAINS, {"gravity": [0.0, -9.81], "box.width": 0.1})
+    light, heavy = (
+        Scene.model_validate(bare | {"intruders": [{"radius": 0.01, "density": density, "x": 0.05, "y": 0.05}]})
+        for density in (20.0, 1600.0)
+    )
+    assert settled_limit_of(light) < 0.9 * settled_limit_of(Scene.model_validate(bare))
+    assert settled_limit_of(heavy) == pytest.approx(settled_limit_of(Scene.model_validate(bare)), rel=1e-9)
 
 
 def test_step_stays_inside_the_limit_of_the_coupling() -> None:
