@@ -14,7 +14,7 @@ from scipy.integrate import trapezoid
 from coupled.errors import QuantityError
 
 Floats = NDArray[np.float64]
-ROUNDING = 1e-9  # of the last time: rows stand at multiples of a step, the times asked for are decimal numbers
+LATE = 0.5  # of the distance of two rows: a run ends at the whole step nearest to its duration, and rows are no closer
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,6 +88,6 @@ class Curve:
 
     def _require_inside(self, time: float) -> None:
         first, last = float(self.time[0]), float(self.time[-1])
-        margin = ROUNDING * max(abs(first), abs(last))
+        margin = LATE * float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.0
         if not first - margin <= time <= last + margin:
             raise QuantityError(f"t = {time:g} s is outside the run, whose rows go from {first:g} to {last:g} s")

@@ -40,6 +40,15 @@ def test_the_first_of_several_times_and_an_exact_row() -> None:
     assert there_and_back.first_time_at(0.0) == 0.0
 
 
+def test_the_end_of_a_run_that_is_not_a_whole_number_of_steps_long() -> None:
+    """Steps of 0.3 s end at 0.9 s where 1 s is asked for; rows of every step."""
+    time = 0.3 * np.arange(4)
+    curve = Curve(name="a", time=time, value=2.0 * time)
+    assert curve.at(1.0) == pytest.approx(1.8) and curve.between(0.3, 1.0).mean() == pytest.approx(1.2)
+    with pytest.raises(QuantityError, match="t = 1.1 s is outside the run"):
+        curve.at(1.1)
+
+
 def test_what_a_run_does_not_have() -> None:
     with pytest.raises(QuantityError, match="never reaches -2: it stays between -1 and 1"):
         parabola().first_time_at(-2.0)
