@@ -7,6 +7,7 @@ of the file as it is.
 
 import argparse
 
+import accuracy
 import coupled_share
 import features
 import features_figure
@@ -25,6 +26,8 @@ from rich.console import Console
 
 FEATURES, SEARCH = "features", "search"
 MILLION = "million"  # unknowns: three minutes, only on demand
+ACCURACY = "accuracy"  # of the presets: twenty minutes, only on demand
+ON_DEMAND = (MILLION, ACCURACY)
 
 
 def feature_costs(found: list[features.Cost]) -> measures.Numbers:
@@ -39,6 +42,12 @@ def search_costs(found: list[search.Cost]) -> measures.Numbers:
     """Measure every way to find contacts into `found`, return where one begins to beat another."""
     found += search.costs(threads=(1, 2) if measures.two_cores() else (1,))
     return dict(search.crossovers(cost._asdict() for cost in found))
+
+
+def preset_errors() -> measures.Numbers:
+    """Write the page of what presets cost and how far off they are; it has no ratios with goals."""
+    accuracy.measure()
+    return {}
 
 
 def main() -> None:
@@ -56,11 +65,15 @@ def main() -> None:
         "coupled": coupled_share.coupled,
         "structure": lambda: structure_steps.steps(steps),
         MILLION: lambda: structure_steps.million(steps),
+        ACCURACY: preset_errors,
     }
-    usual = [name for name in groups if name != MILLION]
+    usual = [name for name in groups if name not in ON_DEMAND]
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "groups", nargs="*", metavar="group", help=f"any of {', '.join(groups)}; default: all but {MILLION}"
+        "groups",
+        nargs="*",
+        metavar="group",
+        help=f"any of {', '.join(groups)}; default: all but {', '.join(ON_DEMAND)}",
     )
     chosen = parser.parse_args().groups or usual
     if unknown := set(chosen) - set(groups):
