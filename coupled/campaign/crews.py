@@ -32,9 +32,6 @@ class Crew(Protocol):
     def stop(self) -> None:
         """Ask all runs to write their checkpoints and stop."""
 
-    def kill(self) -> None:
-        """End all runs at once."""
-
 
 class Processes:
     """A pool of one process for each run at a time: one that is killed takes no other run with it.
@@ -78,6 +75,7 @@ class Processes:
             slot.send(signal.SIGINT)
 
     def kill(self) -> None:
+        """End all runs at once; their last checkpoints stay."""
         for slot in self._busy.values():
             slot.send(signal.SIGKILL)
 
@@ -114,11 +112,6 @@ class Ranks:
 
     def stop(self) -> None:
         pass
-
-    def kill(self) -> None:
-        from mpi4py import MPI
-
-        MPI.COMM_WORLD.Abort(130)
 
 
 @contextlib.contextmanager
