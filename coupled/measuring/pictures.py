@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from coupled.measuring.findings import Findings
-from coupled.measuring.record import Floats
-from coupled.measuring.rises import LargeDeviations, Rise, height_over_floor
+from coupled.measuring.look import COLOURS, WIDTH, length, title
+from coupled.measuring.record import Floats, Shaken
+from coupled.measuring.rises import Rise, height_over_floor
 from coupled.measuring.states import Rolls
+from coupled.measuring.windows_picture import large_deviation
 from coupled.report.drawing import Axes, Figure, NullFormatter, plt
 from particles.measures import portrait, strobe
 
-WIDTH = 7.0
-COLOURS = ("#1f5a94", "#c1440e", "#2a9d8f", "#7b4b94", "#e09f3e", "#5d6d7e")
 FEWEST_SAMPLES = 3  # for a band: of two it is wider than the picture
 FEWEST_ROWS = 8  # of the history in a period, for a portrait
 
@@ -41,21 +41,30 @@ def draw_all(found: Sequence[Findings], folder: Path) -> list[Path]:
     return drawn
 
 
-def _title(found: Sequence[Findings]) -> str:
-    return found[0].group.records[0].title if len(found) == 1 else f"{len(found)} cases"
+class Curve(NamedTuple):
+    """An intruder of a group: its label, its rise, its colour, and the shaking whose periods are counted."""
+
+    label: str
+    rise: Rise
+    colour: str
+    shaken: Shaken
+
+    def periods(self, time: Floats) -> Floats:
+        """Times [s] as periods since the shaking began."""
+        return (time - self.shaken.start) / self.shaken.period
 
 
-def _length(found: Sequence[Findings], text: str) -> str:
-    unit = found[0].group.records[0].unit
-    return text if unit == "-" else f"{text} [{unit}]"
-
-
-def _curves(found: Sequence[Findings]) -> list[tuple[str, Rise, str]]:
-    """Label, rise and colour of every intruder of every group."""
+def _curves(found: Sequence[Findings]) -> list[Curve]:
+    """Every intruder of every group."""
     several = any(len(one.rises) > 1 for one in found)
     names = [(one, rise) for one in found for rise in one.rises]
     return [
-        (f"{one.group.label}, {rise.name}" if several else one.group.label, rise, COLOURS[k % len(COLOURS)])
+        Curve(
+            f"{one.group.label}, {rise.name}" if several else one.group.label,
+            rise,
+            COLOURS[k % len(COLOURS)],
+            one.group.records[0].shaken,
+        )
         for k, (one, rise) in enumerate(names)
     ]
 
@@ -66,19 +75,19 @@ def heights(found: Sequence[Findings]) -> Figure | None:
     if not curves:
         return None
     figure, axes = plt.subplots(figsize=(WIDTH, 4.2), layout="constrained")
-    shaken = found[0].group.records[0].shaken
-    for label, rise, colour in curves:
+    for curve in curves:
+        label, rise, colour, _ = curve
         for sample in rise.samples:
-            axes.plot((sample.time - shaken.start) / shaken.period, sample.value, color=colour, lw=0.6, alpha=0.35)
-        period = (rise.time - shaken.start) / shaken.period
+            axes.plot(curve.periods(sample.time), sample.value, color=colour, lw=0.6, alpha=0.35)
+        period = curve.periods(rise.time)
         told = f"{label}, {len(rise.samples)} sample{'s' * (len(rise.samples) > 1)}"
         axes.plot(period, rise.mean, color=colour, lw=2.0, label=told)
         if len(rise.samples) >= FEWEST_SAMPLES:
             low, high = rise.mean - rise.half_width, rise.mean + rise.half_width
             axes.fill_between(period, low, high, color=colour, alpha=0.15, lw=0)
-    axes.set(xlabel="periods of shaking", ylabel=_length(found, "height of the intruder over the floor"))
-    axes.set_title(_title(found), fontsize=10)
-    axes.set_ylim(*_reach([sample.value for _, rise, _ in curves for sample in rise.samples]))
+    axes.set(xlabel="periods of shaking", ylabel=length(found, "height of the intruder over the floor"))
+    axes.set_title(title(found), fontsize=10)
+    axes.set_ylim(*_reach([sample.value for curve in curves for sample in curve.rise.samples]))
     axes.legend(fontsize=8, frameon=False)
     axes.grid(alpha=0.25)
     return figure
@@ -97,20 +106,21 @@ def rise_rates(found: Sequence[Findings]) -> Figure | None:
     if not curves:
         return None
     figure, axes = plt.subplots(figsize=(WIDTH, 3.6), layout="constrained")
-    shaken, shown = found[0].group.records[0].shaken, [np.zeros(1)]
-    for label, rise, colour in curves:
+    shown = [np.zeros(1)]
+    for curve in curves:
+        label, rise, colour, _ = curve
         window = max(1, len(rise.time) // 10)
         mean = rise.mean[::window]
-        middle = (rise.time[0] - shaken.start) / shaken.period + (np.arange(len(mean) - 1) + 0.5) * window
+        middle = curve.periods(rise.time[0]) + (np.arange(len(mean) - 1) + 0.5) * window
         shown.append(np.diff(mean) / window)
         axes.plot(middle, shown[-1], "o-", color=colour, ms=4, lw=1.2, label=label)
         axes.axhline(rise.rate.mean, color=colour, lw=0.8, ls="--")
         if rise.rate.count > 1:
             axes.axhspan(rise.rate.low, rise.rate.high, color=colour, alpha=0.08, lw=0)
     axes.axhline(0.0, color="0.4", lw=0.8)
-    axes.set(xlabel="periods of shaking", ylabel=_length(found, "rise per period"))
+    axes.set(xlabel="periods of shaking", ylabel=length(found, "rise per period"))
     axes.set_title(
-        f"{_title(found)}\nmeans over tenths of the record; dashed the whole, with its 95 % interval", fontsize=9
+        f"{title(found)}\nmeans over tenths of the record; dashed the whole, with its 95 % interval", fontsize=9
     )
     axes.set_ylim(*_reach(shown))
     axes.legend(fontsize=8, frameon=False)
@@ -135,7 +145,7 @@ def profiles(found: Sequence[Findings]) -> Figure | None:
                 axes.plot(mean, own.y, style, color=colour, lw=1.4, label=label)
                 if np.isfinite(half).any():
                     axes.fill_betweenx(own.y, mean - half, mean + half, color=colour, alpha=0.15, lw=0)
-    panels[0].set(xlabel="packing fraction", ylabel=_length(found, "height over the floor"), xlim=(0.0, None))
+    panels[0].set(xlabel="packing fraction", ylabel=length(found, "height over the floor"), xlim=(0.0, None))
     panels[1].set(xlabel="contacts per grain", xlim=(0.0, None))
     panels[2].set(xlabel="temperature over mean mass")
     if any((one.profiles.mean["temperature"] > 0.0).any() for one in shown):
@@ -143,7 +153,7 @@ def profiles(found: Sequence[Findings]) -> Figure | None:
         panels[2].xaxis.set_minor_formatter(NullFormatter())
     (panels[0] if len(shown) > 1 else panels[2]).legend(fontsize=7, frameon=False)
     frames = sum(one.profiles.frames for one in shown)
-    figure.suptitle(f"{_title(found)}: means of {frames} frame{'s' * (frames > 1)}", fontsize=10)
+    figure.suptitle(f"{title(found)}: means of {frames} frame{'s' * (frames > 1)}", fontsize=10)
     return figure
 
 
@@ -159,10 +169,8 @@ def convection(one: Findings) -> Figure | None:
     limit = float(np.nanquantile(np.abs(up), 0.98)) or 1.0
     shown = axes.imshow(up, origin="lower", extent=extent, cmap="RdBu_r", vmin=-limit, vmax=limit, aspect="equal")
     _streamlines(axes, one.rolls)
-    figure.colorbar(shown, ax=axes, label=_length([one], "rise per period"), shrink=0.8)
-    axes.set(
-        xlabel=_length([one], "x"), ylabel=_length([one], "height over the floor"), xlim=extent[:2], ylim=extent[2:]
-    )
+    figure.colorbar(shown, ax=axes, label=length([one], "rise per period"), shrink=0.8)
+    axes.set(xlabel=length([one], "x"), ylabel=length([one], "height over the floor"), xlim=extent[:2], ylim=extent[2:])
     roll = one.rolls.roll
     told = f"{roll.mean:.3g}" + (f" +- {roll.half_width:.2g}" if roll.count > 1 else "")
     axes.set_title(f"{one.group.label}: middle over sides {told} per period", fontsize=10)
@@ -197,70 +205,9 @@ def phase_portrait(one: Findings) -> Figure | None:
     seen = portrait(time[on], swing, period=shaken.period, start=shaken.start, bins=min(32, round(rows)))
     left.plot(seen.phase, seen.value, ".", ms=2, color=COLOURS[0], alpha=0.4)
     left.plot((np.arange(len(seen.mean)) + 0.5) / len(seen.mean), seen.mean, "k-", lw=1.2)
-    left.set(xlabel="phase of the shaking", ylabel=_length([one], "height over the floor, rise taken out"))
+    left.set(xlabel="phase of the shaking", ylabel=length([one], "height over the floor, rise taken out"))
     points = right.scatter(swing, speed, c=seen.phase, s=3, cmap="twilight", vmin=0.0, vmax=1.0)
     figure.colorbar(points, ax=right, label="phase")
-    right.set(xlabel=_length([one], "height over the floor, rise taken out"), ylabel="vertical velocity")
+    right.set(xlabel=length([one], "height over the floor, rise taken out"), ylabel="vertical velocity")
     figure.suptitle(f"{one.group.label}: {rise.name}, {record.title}", fontsize=9)
     return figure
-
-
-def large_deviation(one: Findings) -> Figure | None:
-    """Histograms of all windows, their limit, the transform, and the symmetry where there is one."""
-    rise = next((rise for rise in one.rises if not rise.deviations.lacks), None)
-    if rise is None:
-        return None
-    found = rise.deviations
-    figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH + 2.0, 4.2), layout="constrained")
-    tones = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, len(found.curves)))
-    for curve, tone in zip(found.curves, tones, strict=True):
-        left.errorbar(
-            curve.v, curve.rate, curve.half_width, fmt="o-", ms=3, lw=0.8, elinewidth=0.6, color=tone,
-            label=f"{curve.periods} period{'s' * (curve.periods > 1)}",
-        )  # fmt: skip
-    if np.isfinite(found.limit.rate).sum() > 1:
-        left.errorbar(
-            found.limit.v,
-            found.limit.rate,
-            found.limit.half_width,
-            fmt="ks",
-            ms=4,
-            mfc="none",
-            label="limit of the line",
-        )
-    chosen = found.tilted[found.settled or found.lengths[-1]]
-    known = np.isfinite(chosen.rate)
-    left.plot(chosen.v[known], chosen.rate[known], "r-", lw=1.4, label=_transform_label(found))
-    left.set(xlabel=_length([one], "rise per period v"), ylabel="I(v)")
-    if not known.any() and not any(np.isfinite(curve.rate).any() for curve in found.curves):
-        left.text(0.5, 0.5, "too few windows", ha="center", va="center", transform=left.transAxes, fontsize=9)
-    else:
-        left.legend(fontsize=7, frameon=False)
-    _draw_symmetry(right, one, rise, tones)
-    figure.suptitle(f"{one.group.label}: {rise.name}, {len(rise.samples)} samples", fontsize=10)
-    return figure
-
-
-def _transform_label(found: LargeDeviations) -> str:
-    if found.settled is None:
-        return f"Legendre transform, n = {found.lengths[-1]}, not settled"
-    return f"Legendre transform, n = {found.settled}"
-
-
-def _draw_symmetry(axes: Axes, one: Findings, rise: Rise, tones: np.ndarray) -> None:
-    found = rise.deviations
-    for each, tone in zip(found.symmetries, tones, strict=True):
-        if each.points is not None:
-            points = each.points
-            axes.errorbar(points.v, points.ratio, points.half_width, fmt="o", ms=3, elinewidth=0.6, color=tone)
-            axes.plot([0.0, points.v.max()], [0.0, each.slope * points.v.max()], "-", lw=0.8, color=tone)
-    seen = [each for each in found.symmetries if each.slope is not None]
-    if seen:
-        slope, half = found.slope if found.slope is not None else (seen[-1].slope, seen[-1].half_width)
-        told = f"slope {slope:.3g} +- {half:.2g}" if math.isfinite(half) else f"slope {slope:.3g}"
-        axes.set_title(told, fontsize=9)
-        axes.set(xlabel=_length([one], "|v|"), ylabel="ln(P(v)/P(-v))/n")
-        axes.grid(alpha=0.25)
-    else:
-        axes.axis("off")
-        axes.text(0.5, 0.5, "no left tail:\nno symmetry can be seen", ha="center", va="center", fontsize=9)

@@ -1,0 +1,73 @@
+"""The picture of windows: large-deviation function and symmetry."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from coupled.measuring.findings import Findings
+from coupled.measuring.look import WIDTH, length
+from coupled.measuring.rises import LargeDeviations, Rise
+from coupled.report.drawing import Axes, Figure, plt
+
+
+def large_deviation(one: Findings) -> Figure | None:
+    """Histograms of all windows, their limit, the transform, and the symmetry where there is one."""
+    rise = next((rise for rise in one.rises if not rise.deviations.lacks), None)
+    if rise is None:
+        return None
+    found = rise.deviations
+    figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH + 2.0, 4.2), layout="constrained")
+    tones = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, len(found.curves)))
+    for curve, tone in zip(found.curves, tones, strict=True):
+        left.errorbar(
+            curve.v, curve.rate, curve.half_width, fmt="o-", ms=3, lw=0.8, elinewidth=0.6, color=tone,
+            label=f"{curve.periods} period{'s' * (curve.periods > 1)}",
+        )  # fmt: skip
+    if np.isfinite(found.limit.rate).sum() > 1:
+        left.errorbar(
+            found.limit.v,
+            found.limit.rate,
+            found.limit.half_width,
+            fmt="ks",
+            ms=4,
+            mfc="none",
+            label="limit of the line",
+        )
+    chosen = found.tilted[found.settled or found.lengths[-1]]
+    known = np.isfinite(chosen.rate)
+    left.plot(chosen.v[known], chosen.rate[known], "r-", lw=1.4, label=_transform_label(found))
+    left.set(xlabel=length([one], "rise per period v"), ylabel="I(v)")
+    if not known.any() and not any(np.isfinite(curve.rate).any() for curve in found.curves):
+        left.text(0.5, 0.5, "too few windows", ha="center", va="center", transform=left.transAxes, fontsize=9)
+    else:
+        left.legend(fontsize=7, frameon=False)
+    _draw_symmetry(right, one, rise, tones)
+    figure.suptitle(f"{one.group.label}: {rise.name}, {len(rise.samples)} samples", fontsize=10)
+    return figure
+
+
+def _transform_label(found: LargeDeviations) -> str:
+    if found.settled is None:
+        return f"Legendre transform, n = {found.lengths[-1]}, not settled"
+    return f"Legendre transform, n = {found.settled}"
+
+
+def _draw_symmetry(axes: Axes, one: Findings, rise: Rise, tones: np.ndarray) -> None:
+    found = rise.deviations
+    for each, tone in zip(found.symmetries, tones, strict=True):
+        if each.points is not None:
+            points = each.points
+            axes.errorbar(points.v, points.ratio, points.half_width, fmt="o", ms=3, elinewidth=0.6, color=tone)
+            axes.plot([0.0, points.v.max()], [0.0, each.slope * points.v.max()], "-", lw=0.8, color=tone)
+    seen = [each for each in found.symmetries if each.slope is not None]
+    if seen:
+        slope, half = found.slope if found.slope is not None else (seen[-1].slope, seen[-1].half_width)
+        told = f"slope {slope:.3g} +- {half:.2g}" if math.isfinite(half) else f"slope {slope:.3g}"
+        axes.set_title(told, fontsize=9)
+        axes.set(xlabel=length([one], "|v|"), ylabel="ln(P(v)/P(-v))/n")
+        axes.grid(alpha=0.25)
+    else:
+        axes.axis("off")
+        axes.text(0.5, 0.5, "no left tail:\nno symmetry can be seen", ha="center", va="center", fontsize=9)
