@@ -23,7 +23,7 @@ from coupled.laws import contact_law, damping_of, interface_spring
 from coupled.layout import box_walls, laid_out, shaking_of
 from coupled.model import Model
 from coupled.scene import RowUnder, Scene, SettledGrains
-from coupled.scene.materials import GRAINS, STRUCTURE, materials
+from coupled.scene.materials import GRAINS, STRUCTURE, intruder_materials, materials
 from coupled.step import with_step
 from particles.timestep import require_stable
 
@@ -85,9 +85,7 @@ def build(scene: Scene, *, bed: Saved | None = None, threads: int = 1, comm: MPI
     )
     ratio = _stiffness_ratio(scene, model, contact, comm)
     model.closed_ratio = _closed_ratio(scene, model, contact)
-    if scene.intruders:
-        first = scene.first_grains.count
-        model.followed = tuple(range(first, first + len(scene.intruders)))
+    model.followed = _followed(scene)
     dt_ratio = scene.time.step / dem.source_bound(system.grains, contact) if system is not None else 0.0
     return Built(model, scene, contact, ratio, comm.bcast(dt_ratio, root=0))
 
@@ -98,8 +96,19 @@ def _free_grains(scene: Scene, bed: Saved | None) -> dem.Grains | None:
     if isinstance(scene.grains, SettledGrains):
         if bed is None:
             raise LeitoError(f'grains.bed = "{scene.grains.bed}" has not been settled: run that scene first')
-        return dem.Grains.from_saved(bed)
+        settled = dem.Grains.from_saved(bed)
+        for number, material in zip(_followed(scene), intruder_materials(scene), strict=True):
+            settled.material[settled.number == number] = material  # the bed may tell others apart
+        return settled
     return laid_out(scene)
+
+
+def _followed(scene: Scene) -> tuple[int, ...]:
+    """Numbers of the intruders: they come after all other free grains."""
+    if not scene.intruders:
+        return ()
+    first = scene.first_grains.count
+    return tuple(range(first, first + len(scene.intruders)))
 
 
 def _placement(scene: Scene, free: dem.Grains | None, comm: MPI.Intracomm) -> tuple[float, float]:

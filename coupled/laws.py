@@ -50,7 +50,7 @@ def contact_law(scene: Scene) -> dem.Contact:
     if not contact.pairs and not contact.materials:
         return _model(contact, chosen | contact.numbers(), hertz_between(contact, GRAINS, GRAINS))
     names = materials(scene)
-    numbers = {pair: chosen | numbers_between(contact, *pair) for pair in _meeting(names)}
+    numbers = {pair: chosen | numbers_between(contact, *pair) for pair in _meeting(scene, names)}
     _fill(list(numbers.values()))
     models = {frozenset(pair): _model(contact, own, hertz_between(contact, *pair)) for pair, own in numbers.items()}
     usual = models[frozenset([GRAINS])]  # where two materials never meet
@@ -121,7 +121,7 @@ def _models_of(law: dem.Contact, scene: Scene, name: str) -> Iterator[dem.Contac
         yield law
         return
     names = materials(scene)
-    yield from (law.rows[names.index(name)][k] for k, other in enumerate(names) if meet(name, other))
+    yield from (law.rows[names.index(name)][k] for k, other in enumerate(names) if meet(scene, name, other))
 
 
 def _dashpot(normal: NormalLaw, slope: float, mass: float) -> float:
@@ -133,9 +133,9 @@ def _dashpot(normal: NormalLaw, slope: float, mass: float) -> float:
     return 2.0 * tsuji * zeta * math.sqrt(mass * slope)
 
 
-def _meeting(names: tuple[str, ...]) -> list[tuple[str, str]]:
+def _meeting(scene: Scene, names: tuple[str, ...]) -> list[tuple[str, str]]:
     """Pairs of materials that can touch, each once."""
-    return [(a, b) for k, a in enumerate(names) for b in names[k:] if meet(a, b)]
+    return [(a, b) for k, a in enumerate(names) for b in names[k:] if meet(scene, a, b)]
 
 
 def _fill(pairs: list[Numbers]) -> None:

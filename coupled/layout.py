@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import particles as dem
 from coupled.scene import Grains, Scene
 from coupled.scene.intruders import MIDDLE
-from coupled.scene.materials import materials
+from coupled.scene.materials import intruder_materials, materials
 from particles.beds import lattice
 
 Floats = NDArray[np.float64]
@@ -116,4 +116,5 @@ def _with_intruders(scene: Scene, place: Floats, radius: Floats, places: Floats,
         np.concatenate([np.full(len(place), scene.grains.density), density]),
         velocity=motion[:, :2],
         spin=motion[:, 2],
+        material=np.concatenate([np.zeros(len(place), np.int64), np.array(intruder_materials(scene), np.int64)]),
     )

@@ -15,6 +15,7 @@ from coupled.interface.door import stiffness_ratio
 from coupled.interface.glued import BODY
 from coupled.laws import contact_law, damping_of, interface_spring
 from coupled.scene import RowUnder, Scene, SizeClass
+from coupled.scene.materials import intruder_materials
 from particles.crowding import ALIKE
 
 CLOSER = 10  # radii tried of a spread, in each kind of grains that the limit of any packing puts together
@@ -98,7 +99,8 @@ def _kinds(scene: Scene, with_intruders: bool) -> dem.Grains:
     density = np.full(len(radius), table.density if table else 0.0)
     radius = np.append(radius, [intruder.radius for intruder in intruders])
     density = np.append(density, [intruder.density for intruder in intruders])
-    return dem.Grains.discs(np.zeros((len(radius), 2)), radius, density)
+    material = np.append(np.zeros(len(radius) - len(intruders), int), intruder_materials(scene)[: len(intruders)])
+    return dem.Grains.discs(np.zeros((len(radius), 2)), radius, density, material=material)
 
 
 def _radii(size: SizeClass) -> NDArray[np.float64]:

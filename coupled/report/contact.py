@@ -25,7 +25,7 @@ def contact_rows(scene: Scene) -> list[Row]:
     if several:
         said = {value for _, _, value in _law_rows(usual)}
         for (a, first), (b, second) in combinations_with_replacement(enumerate(materials(scene)), 2):
-            if meet(first, second):
+            if meet(scene, first, second):
                 own = _law_rows(law.rows[a][b], f"{first} and {second}: ")
                 rows += [row for row in own if row[2] not in said]
     return rows

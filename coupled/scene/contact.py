@@ -79,7 +79,7 @@ class Pair(ContactNumbers):
 
     between: tuple[str, str] = Field(
         description='two materials: "grains", "structure" (glued grains), "walls" or the name of one of them, or the '
-        "name of a row"
+        "name of a row or an intruder"
     )
 
 

@@ -24,6 +24,9 @@ Place = Annotated[
 class Intruder(Table):
     """A free grain of its own size and density, whose path the history tells."""
 
+    name: Annotated[str, Field(min_length=1)] | None = Field(
+        None, description="name of its material in the contact law; absent: that of the free grains"
+    )
     radius: Positive = Field(description="radius [m]")
     density: Positive = Field(description="mass per volume [kg/m3]")
     x: Place = Field(MIDDLE, description="centre at the start [m], or that of the box")

@@ -16,11 +16,18 @@ RESERVED = (GRAINS, STRUCTURE, WALLS, *SIDES)
 
 
 def materials(scene: Scene) -> tuple[str, ...]:
-    """Names of the materials, the free grains first; a row without a name is of theirs."""
+    """Names of the materials, the free grains first; a row or an intruder without a name is of theirs."""
     structure = (STRUCTURE,) if scene.interface is not None else ()
     walls = scene.box.walls if scene.box is not None else ()
     rows = dict.fromkeys(row.name for row in scene.rows if row.name is not None)
-    return (GRAINS, *structure, *walls, *rows)
+    intruders = dict.fromkeys(intruder.name for intruder in scene.intruders if intruder.name is not None)
+    return (GRAINS, *structure, *walls, *rows, *intruders)
+
+
+def intruder_materials(scene: Scene) -> list[int]:
+    """The material of each intruder, by its place in `materials`."""
+    of = materials(scene).index
+    return [of(intruder.name or GRAINS) for intruder in scene.intruders]
 
 
 def speakable(scene: Scene) -> tuple[str, ...]:
@@ -29,10 +36,11 @@ def speakable(scene: Scene) -> tuple[str, ...]:
     return (*materials(scene), *walls)
 
 
-def meet(first: str, second: str) -> bool:
+def meet(scene: Scene, first: str, second: str) -> bool:
     """Whether two materials can touch: walls meet free grains alone, the structure does not meet itself."""
     if _is_wall(first) or _is_wall(second):
-        return {first, second} - {WALLS, *SIDES} == {GRAINS}
+        others = {first, second} - {WALLS, *SIDES}
+        return bool(others) and others <= {GRAINS, *(intruder.name for intruder in scene.intruders)}
     return (first, second) != (STRUCTURE, STRUCTURE)
 
 

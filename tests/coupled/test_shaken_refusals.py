@@ -45,6 +45,13 @@ BAD: dict[str, Case] = {
         ("free grains",),
     ),
     "intruders that leave no place": (SHAKEN, {"grains.sizes.0.count": 1050}, "grains.sizes", ("lattice", "enlarge")),
+    "name of an intruder that is taken": (SHAKEN, {"intruders.0.name": "floor"}, "intruders.0.name", ("taken",)),
+    "pair of nobody": (
+        SHAKEN,
+        {"contact.pairs": [{"between": ["nut", "walls"], "friction": 0.0}]},
+        "contact.pairs.0.between.0",
+        ("no material",),
+    ),
     "axis twice": (PERIODIC, {"box.periodic": ["x", "x"]}, "box.periodic", ("twice",)),
     "unknown axis": (PERIODIC, {"box.periodic": ["z"]}, "box.periodic.0", ("'x' or 'y'",)),
     "wall across": (PERIODIC, {"box.walls": ["left", "floor"]}, "box.walls", ("across the periodic axis x",)),

@@ -143,6 +143,37 @@ def test_walls_of_a_bed_and_its_intruders_pass_on() -> None:
     assert grains.radius[grains.number == 50][0] == 5e-3
 
 
+def test_intruder_with_a_name_has_a_law_of_its_own() -> None:
+    """Soft against walls: the overlaps of a disc that lies on the floor."""
+    tables: dict[str, Any] = {
+        "title": "an intruder alone on the floor",
+        "units": "dimensionless", "gravity": [0.0, -1.0], "time": {"duration": 40.0, "step": 1e-3},
+        "box": {"width": 20.0, "height": 20.0},
+        "grains": {
+            "sizes": [{"radius": 1.0, "count": 1}], "density": RHO, "layout": "list", "positions": [[15.0, 1.0]]
+        },
+        "intruders": [{"name": "nut", "radius": 2.0, "density": RHO, "x": 5.0, "y": 2.0}],
+        "contact": {
+            "normal_stiffness": 1000.0, "normal_damping": 40.0,
+            "pairs": [{"between": ["nut", "walls"], "normal_stiffness": 250.0}],
+        },
+    }  # fmt: skip
+    system = build(Scene.model_validate(tables)).model.particles
+    system.advance(40_000)
+    overlap = dict(zip(system.grains.number, system.look().overlap, strict=True))
+    # weights m g = 1 and 4 on springs of 1000 and 250, known to the rounding of heights of 1
+    assert overlap[0] == pytest.approx(1.0 / 1000.0, rel=1e-9)
+    assert overlap[1] == pytest.approx(4.0 / 250.0, rel=1e-9)
+    later = {name: table for name, table in tables.items() if name not in ("grains", "title")}
+    later |= {"title": "on that bed", "grains": {"bed": "bed"}, "bed": tables}
+    later["rows"] = [{"start": [0.0, 15.0], "end": [0.0, 15.0], "count": 1, "radius": 0.5, "name": "kerb"}]
+    saved = system.state()
+    again = build(Scene.model_validate(later), bed=saved).model.particles
+    again.advance(10)
+    overlap = dict(zip(again.grains.number, again.look().overlap, strict=True))
+    assert overlap[1] == pytest.approx(4.0 / 250.0, rel=1e-9), "the row's material has moved the intruder's on"
+
+
 def test_structure_rides_in_a_shaken_box() -> None:
     """Walls move grains, and grains a free body: its balance closes, as the walls' work is all that comes in."""
     tube = {

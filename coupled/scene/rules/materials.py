@@ -18,6 +18,11 @@ def check_materials(scene: Scene, contact: Contact) -> None:
     for index, row in enumerate(scene.rows):
         if row.name in RESERVED:
             raise refusal(f"rows.{index}.name", row.name, f"is taken; choose none of {', '.join(RESERVED)}")
+    rows = {row.name for row in scene.rows if row.name is not None}
+    for index, intruder in enumerate(scene.intruders):
+        if intruder.name in {*RESERVED, *rows}:
+            taken = ", ".join([*RESERVED, *sorted(rows)])
+            raise refusal(f"intruders.{index}.name", intruder.name, f"is taken; choose none of {taken}")
     _check_pairs(scene, contact)
     for index, pair in enumerate(contact.pairs):
         _check_numbers(contact, pair, f"contact.pairs.{index}")
@@ -32,11 +37,11 @@ def _check_pairs(scene: Scene, contact: Contact) -> None:
         for place, name in enumerate(pair.between):
             if name not in names:
                 raise refusal(f"{key}.{place}", name, f"is no material of this scene; {nearest(name, names)}")
-        if not meet(*pair.between):
+        if not meet(scene, *pair.between):
             raise refusal(
                 key,
                 list(pair.between),
-                'never meet: walls touch "grains" alone, and a structure not itself; remove this pair',
+                "never meet: walls touch free grains alone, and a structure not itself; remove this pair",
             )
         met = tuple(sorted(pair.between))
         if met in seen:
@@ -93,7 +98,7 @@ def _check_constants(scene: Scene, contact: Contact) -> None:
         if name not in names:
             raise refusal(f"contact.materials.{name}", {}, f"is no material of this scene; {nearest(name, names)}")
     for first, second in combinations_with_replacement(materials(scene), 2):
-        if meet(first, second) and hertz_between(contact, first, second) is None:
+        if meet(scene, first, second) and hertz_between(contact, first, second) is None:
             lacking = [name for name in (first, second) if name not in (contact.materials or {})]
             raise missing(
                 f"contact.materials.{lacking[0]}",
