@@ -103,17 +103,10 @@ class Record:
         """Number of grains that the history follows."""
         return len(self.scene.get("intruders", ()))
 
-    @property
-    def laid_out(self) -> int:
-        """Number of grains before the intruders."""
-        table = self.scene
-        while "bed" in table and "sizes" not in table.get("grains", {}):
-            table = table["bed"]
-        return sum(size["count"] for size in table.get("grains", {}).get("sizes", ()))
-
-    def intruder_places(self) -> slice:
-        """Where the intruders stand in the arrays of a frame."""
-        return slice(self.laid_out, self.laid_out + self.intruders)
+    def intruder_places(self, body: NDArray[Any]) -> NDArray[np.int64]:
+        """Where the intruders stand in a frame whose grains have the bodies (n,): last of the free ones."""
+        free = np.nonzero(body == FREE)[0]
+        return free[len(free) - self.intruders :]
 
     def frame_paths(self, name: str) -> list[Path]:
         """Frames of "grains" or "structure", in time."""

@@ -55,7 +55,7 @@ class Rolls:
 def _own(record: Record, arrays: dict[str, np.ndarray]) -> np.ndarray:
     """Free grains that are no intruders."""
     own = arrays["body"] == FREE
-    own[record.intruder_places()] = False
+    own[record.intruder_places(arrays["body"])] = False
     return own
 
 

@@ -164,7 +164,7 @@ def _colours(record: Record, first: Frame | None) -> np.ndarray | None:
     rank = np.empty(len(free), np.int64)
     rank[np.argsort(y[free], kind="stable")] = np.arange(len(free))
     colours[free] = np.array(SHADES, np.uint8)[rank * LAYERS // max(len(free), 1)]
-    colours[record.intruder_places()] = INTRUDER
+    colours[record.intruder_places(body)] = INTRUDER
     return colours
 
 
