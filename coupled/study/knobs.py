@@ -177,6 +177,14 @@ KNOBS: tuple[Knob, ...] = (
         turn=_set("grains.precision"),
     ),
     Knob(
+        name="skin",
+        meaning="reach of the contact lists over what the program chooses",
+        values=(0.5, 2.0),
+        own=lambda scene: scene.grains.skin_factor if _has_grains(scene) else None,
+        turn=_set("grains.skin_factor"),
+        speed_only=True,
+    ),
+    Knob(
         name="threads",
         meaning="threads of the grains",
         values=(2, 1),

@@ -104,7 +104,7 @@ def one_turn(load: Load, knob: Knob, value: Value, base: Scene) -> Setting:
     """The base with one knob turned, and a shorter step where the exchange asks for it."""
     label = knob.label(value)
     turned = ((knob.name, label),)
-    setting = Setting(name=name_of(turned), role="knob", knobs=turned)
+    setting = Setting(name=name_of(turned), role="knob", knobs=turned, speed_only=knob.speed_only)
     if knob.threads:
         return replace(setting, threads=int(value))
     changes = knob.turn(base, value)

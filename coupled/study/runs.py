@@ -68,7 +68,7 @@ class Runner:
             group = [outcomes[task.folder] for task in tasks[setting.name]]
             if setting.role == "base":
                 self._base = [outcome.task.folder for outcome in group]
-            rans.append(came_to(setting, group, self._base if setting.threads > 1 else None))
+            rans.append(came_to(setting, group, self._base if setting.speed_only else None))
         return rans
 
     def _tasks(self, setting: Setting) -> list[Task]:

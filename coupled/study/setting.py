@@ -35,6 +35,8 @@ class Setting:
         Preset under the changes.
     threads : int
         For the grains.
+    speed_only : bool
+        Whether no bit of the results must differ from the base's.
     work : float
         Estimated cost over that of the base [-].
     """
@@ -45,6 +47,7 @@ class Setting:
     changes: tuple[str, ...] = ()
     accuracy: str | None = None
     threads: int = 1
+    speed_only: bool = False
     work: float = 1.0
 
 

@@ -43,7 +43,16 @@ def test_a_scene_has_the_knobs_of_what_it_models():
         return {knob.name for knob in knobs_of(load_scene(scene))}
 
     assert names("beam_vibration") == {"step", "mesh", "order"}
-    assert names("bed") == {"fraction", "integrator", "coarsening", "stiffness", "rolling", "precision", "threads"}
+    assert names("bed") == {
+        "fraction",
+        "integrator",
+        "coarsening",
+        "stiffness",
+        "rolling",
+        "precision",
+        "skin",
+        "threads",
+    }
     assert names("elastic_tube") == names("bed") | set(STRUCTURES)
     assert names("rigid_tube") == names("bed") | {"substeps", "interface", "glued"}
 

@@ -97,8 +97,8 @@ def test_text_says_when_a_knob_of_speed_changes_results(judged, tmp_path):
             values={QUANTITY: (1.0,)}, wall_seconds=1.0, cpu_seconds=2.0, same_bits=same,
         )  # fmt: skip
 
-    assert "same bits" in told([threads(True)], judged, tmp_path)
-    assert "CHANGED RESULTS" in told([threads(False)], judged, tmp_path)
+    assert "the same bits as" in told([threads(True)], judged, tmp_path)
+    assert "NOT the same bits" in told([threads(False)], judged, tmp_path)
 
 
 @pytest.mark.parametrize(("error", "half_width", "shown"), [(0.0123, 0.0, "+1.2 %"), (-0.5, 0.01, "-50 +- 1 %")])
