@@ -9,7 +9,7 @@ from pathlib import Path
 import report
 from matplotlib.ticker import FuncFormatter, LogLocator
 
-from coupled.report.drawing import plt
+from coupled.report.drawing import Line2D, plt
 from coupled.scene.accuracy import PRESETS
 from coupled.study.errors import Judged
 from coupled.study.study import Study
@@ -23,10 +23,10 @@ TEXT = """# What the presets cost, and how far off they are
 Written by `make bench ARGS=accuracy` in {minutes:.0f} min on {cores} cores of {processor}.
 
 A study (`leito study`) of each scene, shortened where that is said. Errors are those of a quantity against its closed
-form or the finest setting of its scene (step and mesh twice as fine, four times where a picture is shown), over its
-magnitude. In scenes with grains they are means over five seeds, +- Student's 95 % interval of the differences seed by
-seed; an error inside its interval is not resolved. Times are wall seconds of one run on one core, beds and compilation
-not counted.
+form or the finest setting of its scene (step and mesh twice as fine; four times for the first three), over its
+magnitude. In scenes with grains they are means over five seeds (three for the trench), +- Student's 95 % interval of
+the differences seed by seed; an error inside its interval is not resolved. Times are wall seconds of one run on one
+core, beds and compilation not counted.
 
 {presets}
 
@@ -119,17 +119,14 @@ def _pictures(path: Path, scene: str, study: Study) -> list[str]:
 def _draw(path: Path, done: Sequence[Done]) -> None:
     """Every preset of every scene and quantity: error against relative wall time."""
     figure, axes = plt.subplots(figsize=(8.0, 4.8), layout="constrained")
-    labels = set()
     for _, _, study in done:
         base = _base(study)
         for item in (item for items in study.judged.values() for item in items if item.setting.role == "preset"):
             colour, marker = STYLE[item.setting.accuracy]
             sure = item.verdict == "resolved"
-            name = item.setting.accuracy if sure and item.setting.accuracy not in labels else "_"
-            labels |= {name}
             height = max(item.known, 1e-7)
             fill = colour if sure else "white"
-            axes.plot(item.ran.wall_seconds / base, height, marker, color=colour, mfc=fill, ms=6, label=name)
+            axes.plot(item.ran.wall_seconds / base, height, marker, color=colour, mfc=fill, ms=6)
     axes.set(
         xscale="log", yscale="log", xlabel="wall time over that of the scene as it is [-]", ylabel="error [-]",
         title=f"Presets on {len(done)} scenes that ship",
@@ -139,6 +136,9 @@ def _draw(path: Path, done: Sequence[Done]) -> None:
     axes.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
     axes.axvline(1.0, color="0.7", lw=0.8)
     axes.grid(True, which="major", color="0.92")
-    axes.legend(fontsize=8)
+    handles = [
+        Line2D([], [], color=colour, marker=marker, ls="none", label=name) for name, (colour, marker) in STYLE.items()
+    ]
+    axes.legend(handles=handles, fontsize=8)
     figure.savefig(path, dpi=130)
     plt.close(figure)
