@@ -60,6 +60,10 @@ def main() -> None:
     except Interrupted as stop:
         say(str(stop))
         sys.exit(INTERRUPTED)
+    except MemoryError as error:
+        _end_other_ranks()
+        say(f"there is too little memory ({error or 'none is left'}): take fewer grains or elements")
+        sys.exit(USER_ERROR)
     except Exception as error:
         if not is_sentence(error):
             _end_other_ranks()

@@ -88,6 +88,20 @@ BAD: dict[str, Case] = {
         "output.history_interval",
         ("one step",),
     ),
+    "frames between steps": (
+        GRAINS,
+        {"output.frames_per_second": 1e6},
+        "output.frames_per_second",
+        ("more than one frame in a time.step", "at most 100000"),
+    ),
+    "steps whose times are equal": (GRAINS, {"time.step": 1e-17}, "time.duration", ("1e+15 steps", "shorten it")),
+    "number beyond all": (GRAINS, {"contact.friction": 1e31}, "contact.friction", ("at most 1e+30",)),
+    "drag that turns grains about": (
+        GRAINS,
+        {"damping": {"translational": 2e5}},
+        "damping.translational",
+        ("within time.step = 1e-05 s", "less than 1e+04 1/s"),
+    ),
     "rest without gravity": (
         GRAINS,
         {"time.stop_at_rest": 1e-6, "gravity": GONE},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from grain_scenes import MASS, RADIUS, discs, head_on
@@ -98,6 +99,14 @@ def sliding(friction: float) -> Trial:
         return [Measured(what="speed [m/s]", value=value, expected=expected, allowed=1e-3 * speed)]
 
     return Trial(scene=scene, check=check)
+
+
+def rubbed(share: float) -> Trial:
+    """The same with friction of 0.1 and a tangential dashpot; the share is c_t dt over the mass m/3 of the contact."""
+    trial = sliding(0.1)
+    step = trial.scene["time"]["step"]
+    contact = trial.scene["contact"] | {"tangential_damping": share * MASS / 3 / step}
+    return replace(trial, scene=trial.scene | {"contact": contact})
 
 
 def rolling(friction: float) -> Trial:
@@ -207,6 +216,13 @@ AXES = (
         values=(0.0, 1e-9, 1e-3, 0.01, 0.1, 1.0, 1e3, 1e6, 1e12, 1e300),
         trial=sliding,
         quick={0.0: "right", 0.1: "right", 1e6: "right"},
+    ),
+    Axis(
+        part="Grains",
+        name="Tangential dashpot times step over mass",
+        text="The same disc with friction of 0.1, which limits the dashpot. Right: two thirds of its speed.",
+        values=(1e-9, 1e-3, 0.1, 0.5, 1.0, 2.0, 10.0, 1e3, 1e6, 1e12),
+        trial=rubbed,
     ),
     Axis(
         part="Grains",

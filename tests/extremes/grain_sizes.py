@@ -155,8 +155,8 @@ AXES = (
     Axis(
         part="Grains",
         name="Number of grains",
-        text="A lattice falls freely for 20 steps. Right: the change of its potential energy.",
-        values=(1, 2, 1000, 1_000_000),
+        text="A lattice falls freely for 20 steps. Right: change of its potential energy. The last needs terabytes.",
+        values=(1, 2, 1000, 1_000_000, 10**12),
         trial=many,
         quick={1: "right", 2: "right"},
         show=str,

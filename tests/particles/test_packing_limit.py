@@ -56,6 +56,13 @@ def test_free_neighbours_line_up_at_most_so_far(degrees: float) -> None:
     assert best == pytest.approx(aligned, abs=math.radians(0.5) * most)
 
 
+def test_a_million_free_neighbours_are_counted() -> None:
+    """So many lie all around: cos^2 is 1/2 in the mean, and the grid of directions adds less than one."""
+    most, aligned = side_by_side(2.0 * math.pi / 1e6)
+    assert most == 1e6
+    assert 0.5 * most <= aligned <= 0.5 * most + 1.0
+
+
 @pytest.mark.parametrize("prescribed", [0.9, 0.5, 0.2])
 def test_prescribed_neighbours_line_up_no_farther(prescribed: float) -> None:
     """Around a disc of radius 1 free ones as large and smaller prescribed ones, all touching and not overlapping."""

@@ -58,6 +58,11 @@ BAD: dict[str, tuple[Callable[[], object], str]] = {
     "threads": (lambda: ParticleSystem(disc(), MODEL, time_step=1e-6, threads=0), "threads = 0 must be at least 1"),
     "coinciding": (coinciding, "grains 1 and 2 have the same centre: move one of them"),
     "step too large": (lambda: require_stable(disc(), MODEL, 1.0), "time step 1 s is above the limit .* take at most"),
+    "step too large for dashpots": (
+        lambda: require_stable(
+            Grains.discs([[0, 0], [3, 0]], 1.0, 1.0),
+            ContactModel(normal=LinearSpringDashpot(stiffness=1.0, damping=10.0)), 0.5),
+        "time step 0.5 s is above m_eff/c_n = 0.15708 s, in which the normal dashpot .* take at most 0.015708 s"),
     "wall normal": (lambda: Wall(point=(0.0, 0.0), normal=(0.0, 0.0)), "wall normal must not be zero"),
     "wall point": (lambda: Wall(point=(NAN, 0.0), normal=(0.0, 1.0)), "wall point = nan must be a finite number"),
     "box": (lambda: box(-1.0, 1.0), "box width = -1 must be greater than 0"),
