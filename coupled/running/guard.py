@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from mpi4py import MPI
@@ -108,7 +109,9 @@ class Guard:
             sign = watchdog.feeding_exchange(self._model, seen.look)
             if sign is not None:
                 raise self._failure(sign, self._model.steps_done)
-        self._good = Good(self._model.snapshot(self._good.moment), seen, self._model.steps_done)
+        turned = max(seen.balance.throughput, self._good.glance.turned)
+        kept = replace(seen, turned=turned)
+        self._good = Good(self._model.snapshot(self._good.moment), kept, self._model.steps_done)
         return self._good
 
     def _turns_twice(self) -> bool:

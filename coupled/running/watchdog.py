@@ -34,13 +34,15 @@ class Unstable(LeitoError):
 class Glance:
     """What a watchdog looks at: the ledger, the contacts and a cell that is inside out at one moment.
 
-    `beyond` says that an observation is far outside the theory of the structure; looks alone do not tell.
+    `beyond` says that an observation is far outside the theory of the structure; looks alone do not tell. `turned` is
+    the most energy [J/m] that looks up to this one have seen turned over since the start.
     """
 
     balance: Balance
     look: ContactLook | None
     overturned: int | None
     beyond: str | None = None
+    turned: float = 0.0
 
 
 def glance(model: Model, start: dict[str, float]) -> Glance:
@@ -63,7 +65,7 @@ def first_sign(model: Model, seen: Glance, since: Glance) -> Sign | None:
         or _passed(model)
         or _too_fast(model, seen)
         or _energy_made(model, seen, since)
-        or _energy_made_in_all(model, seen)
+        or _energy_made_in_all(model, seen, since)
     )
 
 
@@ -135,14 +137,15 @@ def _energy_made(model: Model, seen: Glance, since: Glance) -> Sign | None:
     return _energy_sign(model, made, made / turned, seen, then)
 
 
-def _energy_made_in_all(model: Model, seen: Glance) -> Sign | None:
-    """Energy from nothing since the start: a rebound without loss leaves all as it was and has turned nothing over."""
+def _energy_made_in_all(model: Model, seen: Glance, since: Glance) -> Sign | None:
+    """Energy from nothing since the start; after a rebound without loss all is as it was, and nothing turned over."""
     balance = seen.balance
     stored = sum(abs(value) for value in balance.entries.values())
-    least = max(ENERGY_MADE * balance.throughput, NOISE * stored, OF_PRESENT * _present(balance))
+    turned = max(balance.throughput, since.turned)
+    least = max(ENERGY_MADE * turned, NOISE * stored, OF_PRESENT * _present(balance))
     if not balance.error > least:
         return None
-    return _energy_sign(model, balance.error, balance.relative_error, seen, None)
+    return _energy_sign(model, balance.error, balance.error / turned if turned else math.inf, seen, None)
 
 
 def _present(balance: Balance) -> float:

@@ -7,21 +7,20 @@ from particles.kernels.periodic import nearest
 
 
 @inner_kernel
-def depth_on_way(x, y, ux, uy, reach, smaller, dt):
-    """Largest overlap over the smaller radius, along a straight way that ended `dt` later at (x, y) with velocity u."""
-    speed2, back = ux * ux + uy * uy, 0.0
-    if speed2 > 0.0:
-        back = min(max((x * ux + y * uy) / speed2, 0.0), dt)
-    return (reach - math.hypot(x - back * ux, y - back * uy)) / smaller
-
-
-@inner_kernel
-def depth_of_pair(grains, i, j, dt):
-    dx = nearest(grains.period_x, grains.x[j] - grains.x[i])
-    dy = nearest(grains.period_y, grains.y[j] - grains.y[i])
+def deeper_on_way(grains, i, j, depth, dt):
+    """Largest overlap of a pair over its smaller radius on its straight way of the last step, if above `depth`."""
+    x = nearest(grains.period_x, grains.x[j] - grains.x[i])
+    y = nearest(grains.period_y, grains.y[j] - grains.y[i])
     ux, uy = grains.vx[j] - grains.vx[i], grains.vy[j] - grains.vy[i]
-    r_i, r_j = grains.radius[i], grains.radius[j]
-    return depth_on_way(dx, dy, ux, uy, r_i + r_j, min(r_i, r_j), dt)
+    parting = x * ux + y * uy
+    if parting > 0.0:
+        back = min(parting / (ux * ux + uy * uy), dt)
+        x, y = x - back * ux, y - back * uy
+    reach, smaller = grains.radius[i] + grains.radius[j], min(grains.radius[i], grains.radius[j])
+    far = reach - depth * smaller
+    if far <= 0.0 or x * x + y * y >= far * far:
+        return depth
+    return (reach - math.hypot(x, y)) / smaller
 
 
 @kernel
@@ -30,7 +29,7 @@ def deepest_listed(grains, pairs, walls, dt):
     n_free = grains.block_start[grains.block_start.shape[0] - 2]
     depth, at, other = 0.0, -1, -1
     for k in range(pairs.start[n_free]):
-        found = depth_of_pair(grains, pairs.owner[k], pairs.partner[k], dt)
+        found = deeper_on_way(grains, pairs.owner[k], pairs.partner[k], depth, dt)
         if found > depth:
             depth, at, other = found, pairs.owner[k], pairs.partner[k]
     in_wall, grain, wall = 0.0, -1, -1
@@ -51,7 +50,7 @@ def deepest_of(fast, grains, body, enough, dt):
     for i in fast:
         for j in range(grains.x.shape[0]):
             if i != j and (i < n_free or j < n_free) and (body[i] != body[j] or body[i] < 0):
-                found = depth_of_pair(grains, i, j, dt)
+                found = deeper_on_way(grains, i, j, depth, dt)
                 if found > depth:
                     depth, at, other = found, i, j
         if depth > enough:

@@ -31,7 +31,9 @@ def _between(axis: Axis, low: Verdict, high: Verdict, leito: LeitoProcess, folde
 
 
 def ranges(verdicts: list[Verdict], axis: Axis, outcome: str) -> str:
-    """Runs of successive values with an outcome, in words."""
+    """Runs of successive values with an outcome, in words; their number where values are words themselves."""
+    if isinstance(verdicts[0].value, str):
+        return f"{sum(verdict.outcome == outcome for verdict in verdicts)} of {len(verdicts)}"
     runs: list[list[Verdict]] = []
     for before, verdict in zip([None, *verdicts], verdicts, strict=False):
         if verdict.outcome == outcome:

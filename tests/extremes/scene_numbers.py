@@ -100,7 +100,7 @@ def with_number(case: str) -> Trial:
             Measured(what="residual of momentum", value=residual, expected=0.0, allowed=1e-9),
         ]
 
-    return Trial(scene=scene, check=check, limit=20.0)
+    return Trial(scene=scene, check=check)
 
 
 AXES = (

@@ -83,14 +83,14 @@ class Trial:
     prepare : callable, optional
         Puts into the folder of the run what is to be there before, for `arguments` such as ``--resume``.
     limit : float
-        Wall time [s] beyond which the run hangs.
+        Wall time [s] beyond which the run hangs; kernels may have to be compiled first.
     """
 
     scene: dict[str, Any]
     check: Check
     prepare: Callable[[Path], None] | None = None
     arguments: tuple[str, ...] = ()
-    limit: float = 60.0
+    limit: float = 180.0
 
 
 @dataclass(frozen=True, kw_only=True)
