@@ -42,8 +42,8 @@ def bending_stiffness_ratio(shape: Shape, poissons_ratio: float) -> float:
         1 + (1 - nu)/2 (l/H)^2 + ((1 - nu)^2/(1 - 2 nu) - 1)/n^2
 
     Triangles see the largest shear and strain of a cell in place of the linear ones, three times the mean square:
-    ``1 + 3 (1 - nu)/2 (l/H)^2 + 2/n^2``. Against frequencies of beams to 3 % for quadrilaterals and to 25 % for triangles
-    (tests).
+    ``1 + 3 (1 - nu)/2 (l/H)^2 + 2/n^2``. Against frequencies of beams to 3 % for quadrilaterals and to 25 % for
+    triangles (tests).
     """
     if isinstance(shape, Beam):
         length, height, layers = shape.length / shape.along, shape.height, shape.across

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -66,6 +67,8 @@ class NewmarkStepper:
         self._weights()
         effective = self._effective_matrix()
         self._contrast = stiffness_over_mass(effective, mass)
+        if not math.isfinite(self._contrast):
+            self.require_resolved()
         self._solve = factorise(effective, mass)
 
     def _weights(self) -> None:
