@@ -231,7 +231,7 @@ AXES = (
         "Load [N/m]",
         "A force on the upper face of a free bar for 0.1 ms. Right: the centroid goes half F/m t^2.",
         (0.0, 1e-9, 1.0, 1e6, 1e9, 1e12, 1e100, 1e200, 1e308),
-        {"linear": {0.0: "right", 1e12: "stopped", 1e308: "stopped"}, "large_strain": {1e308: "stopped"}},
+        {"linear": {0.0: "right", 1e12: "stopped", 1e308: "refused"}, "large_strain": {1e12: "stopped"}},
     ),
     *_each(
         stretched,
