@@ -46,18 +46,19 @@ def result_of(sample: Sample, outcome: Outcome) -> Result:
     """The quantities of the scene out of a run that is done; of a scene without any, the last row of its history."""
     if outcome.status != "done":
         return Result(sample=sample, outcome=outcome, numbers={}, units={})
-    asked = sample.task.scene.quantities
+    asked, system = sample.task.scene.quantities, sample.task.scene.units
     if not asked:
         rows = history.read_history(sample.task.folder / history.NAME)
         last = {name: float(column[-1]) for name, column in rows.items()}
-        return Result(sample=sample, outcome=outcome, numbers=last, units={name: unit_of(name) for name in last})
+        units = {name: unit_of(name, system) for name in last}
+        return Result(sample=sample, outcome=outcome, numbers=last, units=units)
     numbers, unknown = {}, []
     for quantity in asked:
         try:
             numbers[quantity.name] = evaluate(quantity, sample.task.folder)
         except QuantityError as error:
             unknown.append(str(error))
-    units = {quantity.name: unit_shown(quantity) for quantity in asked}
+    units = {quantity.name: unit_shown(quantity, system) for quantity in asked}
     return Result(sample=sample, outcome=outcome, numbers=numbers, units=units, unknown=tuple(unknown))
 
 

@@ -36,7 +36,7 @@ class History:
             rows = [row for row in csv.reader(file)]
         if not rows:
             return
-        self._names = rows[0]
+        self._names = [_bare(name) for name in rows[0]]
         # times are written exactly (shortest repr), the margin only covers a cut last row
         whole = [row for row in rows[1:] if len(row) == len(rows[0]) and float(row[0]) <= until]
         beside = self.path.with_suffix(".part")
@@ -46,15 +46,16 @@ class History:
         self.last_time = float(whole[-1][0]) if whole else -math.inf
 
     def write(self, row: dict[str, float]) -> None:
-        """Append a row; the first one makes the header."""
+        """Append a row; the first one makes the header. Columns have their names, whatever the units beside them."""
         new = not self._names
         with open(self.path, "w" if new else "a", newline="") as file:
             writer = csv.writer(file)
             if new:
-                self._names = list(row)
-                writer.writerow(self._names)
-            writer.writerow([repr(float(row[name])) for name in self._names])
-        self.last_time = float(row[self._names[0]])
+                writer.writerow(row)
+            values = {_bare(name): float(value) for name, value in row.items()}
+            self._names = self._names or list(values)
+            writer.writerow([repr(values[name]) for name in self._names])
+        self.last_time = values[self._names[0]]
 
 
 def read_history(path: Path) -> dict[str, NDArray[np.float64]]:
@@ -62,4 +63,9 @@ def read_history(path: Path) -> dict[str, NDArray[np.float64]]:
     with open(path, newline="") as file:
         rows = list(csv.reader(file))
     table = np.array(rows[1:], dtype=float).reshape(-1, len(rows[0]))
-    return {name.partition(" [")[0]: column for name, column in zip(rows[0], table.T, strict=True)}
+    return {_bare(name): column for name, column in zip(rows[0], table.T, strict=True)}
+
+
+def _bare(name: str) -> str:
+    """A name without its unit."""
+    return name.partition(" [")[0]

@@ -15,6 +15,7 @@ from coupled.output import history
 from coupled.output.folder import SCENE
 from coupled.output.frames import read_frame
 from coupled.report.drawing import Axes, EllipseCollection, Figure, PolyCollection, plt
+from coupled.report.units import Shown
 
 FREE, GLUED = -1, 0
 WIDTH = 7.0
@@ -54,6 +55,7 @@ class _Files:
         self.time = self.history["time"]
         self.scene: dict[str, Any] = tomllib.loads((folder / SCENE).read_text())
         self.title = self.scene["title"]
+        self.shown = Shown(self.scene.get("units", "SI"))
         self.grains = _last(folder, "grains")
         self.structure = _last(folder, "structure")
 
@@ -84,12 +86,12 @@ def configuration(run: _Files) -> Figure | None:
     moments = []
     if run.grains is not None:
         points, radius = run.grains["points"], run.grains["radius"]
-        _draw_grains(figure, axes, points, radius, run.grains["overlap"], run.grains["body"])
+        _draw_grains(figure, axes, run)
         low, high = (points - radius[:, None]).min(axis=0), (points + radius[:, None]).max(axis=0)
         moments.append(float(run.grains["time"]))
     if run.structure is not None:
         places = run.structure["points"] + run.structure["displacement"][:, :2]
-        _draw_structure(figure, axes, places, run.structure)
+        _draw_structure(figure, axes, places, run)
         low, high = np.minimum(low, places.min(axis=0)), np.maximum(high, places.max(axis=0))
         moments.append(float(run.structure["time"]))
     margin = 0.02 * float((high - low).max())
@@ -97,7 +99,8 @@ def configuration(run: _Files) -> Figure | None:
     figure.set_size_inches(WIDTH, 0.85 * WIDTH * shape + 1.6)
     axes.set(
         xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal",
-        xlabel="x [m]", ylabel="y [m]", title=f"{run.title}, t = {max(moments):g} s",
+        xlabel=run.shown.label("x", "m"), ylabel=run.shown.label("y", "m"),
+        title=f"{run.title}, t = {max(moments):g}{run.shown.after('s')}",
     )  # fmt: skip
     return figure
 
@@ -118,9 +121,9 @@ def near_structure(run: _Files) -> Figure | None:
     return figure
 
 
-def _draw_grains(
-    figure: Figure, axes: Axes, points: np.ndarray, radius: np.ndarray, overlap: np.ndarray, body: np.ndarray
-) -> None:
+def _draw_grains(figure: Figure, axes: Axes, run: _Files) -> None:
+    points, radius, body = (run.grains[name] for name in ("points", "radius", "body"))
+    overlap = run.shown.number(run.grains["overlap"], "um")
     order = np.argsort(overlap)
     diameter = 2.0 * radius[order]
     discs = EllipseCollection(
@@ -129,22 +132,29 @@ def _draw_grains(
     )  # fmt: skip
     free = overlap[body == FREE]
     top = float(np.quantile(free, 0.995)) if len(free) else float(overlap.max(initial=0.0))
-    discs.set_array(1e6 * overlap[order])
-    discs.set_clim(0.0, max(1e6 * top, 1e-12))
+    discs.set_array(overlap[order])
+    discs.set_clim(0.0, max(top, 1e-12))
     axes.add_collection(discs)
     figure.colorbar(
-        discs, ax=axes, label="summed overlap [um]", orientation="horizontal", shrink=0.6, aspect=40, extend="max"
+        discs,
+        ax=axes,
+        label=run.shown.label("summed overlap", "um"),
+        orientation="horizontal",
+        shrink=0.6,
+        aspect=40,
+        extend="max",
     )
 
 
-def _draw_structure(figure: Figure, axes: Axes, places: np.ndarray, frame: dict[str, np.ndarray]) -> None:
+def _draw_structure(figure: Figure, axes: Axes, places: np.ndarray, run: _Files) -> None:
+    frame = run.structure
     corners = frame["cells"][:, : 4 if frame["cells"].shape[1] in (4, 9) else 3]
     cells = PolyCollection(places[corners], cmap="viridis", edgecolors="face", linewidths=0.3)
     stress = frame["von_mises"][corners].mean(axis=1)
     axes.add_collection(cells)
     if stress.any():
-        cells.set_array(stress / 1e6)
-        figure.colorbar(cells, ax=axes, label="von Mises [MPa]", aspect=18, shrink=0.75)
+        cells.set_array(run.shown.number(stress, "MPa"))
+        figure.colorbar(cells, ax=axes, label=run.shown.label("von Mises", "MPa"), aspect=18, shrink=0.75)
     else:
         cells.set_facecolor("0.55")
 
@@ -154,8 +164,8 @@ def centroid(run: _Files) -> Figure | None:
     if not run.has("centroid_y") or run.scene["structure"].get("initial"):
         return None
     figure, axes = _new(run)
-    axes.plot(run.time, 1e3 * run.history["centroid_y"])
-    axes.set(xlabel="time [s]", ylabel="height of the centroid [mm]")
+    axes.plot(run.time, run.shown.number(run.history["centroid_y"], "mm"))
+    axes.set(xlabel=run.shown.label("time", "s"), ylabel=run.shown.label("height of the centroid", "mm"))
     return figure
 
 
@@ -169,7 +179,7 @@ def reaction(run: _Files) -> Figure | None:
         axes.plot(run.time, run.history["reaction_x"], label="horizontal", linewidth=0.9)
     if run.scene["structure"]["kind"] != "rigid":
         axes.plot(run.time, -run.history["applied_y"], "k--", label="applied load, opposite", linewidth=0.9)
-    axes.set(xlabel="time [s]", ylabel="force [N/m]")
+    axes.set(xlabel=run.shown.label("time", "s"), ylabel=run.shown.label("force", "N/m"))
     axes.legend()
     return figure
 
@@ -180,8 +190,8 @@ def penetration(run: _Files) -> Figure | None:
         return None
     figure, axes = _new(run)
     down = run.history["centroid_y"][0] - run.history["centroid_y"]
-    axes.plot(1e3 * down, run.history["reaction_y"], linewidth=0.8)
-    axes.set(xlabel="penetration [mm]", ylabel="vertical reaction [N/m]")
+    axes.plot(run.shown.number(down, "mm"), run.history["reaction_y"], linewidth=0.8)
+    axes.set(xlabel=run.shown.label("penetration", "mm"), ylabel=run.shown.label("vertical reaction", "N/m"))
     return figure
 
 
@@ -198,12 +208,13 @@ def interface_forces(run: _Files) -> Figure | None:
     )
     for axes, points, force, label in pairs:
         own = (points[:, 1] < middle) & ((force != 0.0) | _outermost(points))
-        axes.vlines(1e3 * points[own, 0], 0.0, force[own], colors="tab:blue", linewidth=1.0)
-        axes.plot(1e3 * points[own, 0], force[own], ".", markersize=3)
-        axes.set(ylabel=f"vertical force {label} [N/m]")
+        x = run.shown.number(points[own, 0], "mm")
+        axes.vlines(x, 0.0, force[own], colors="tab:blue", linewidth=1.0)
+        axes.plot(x, force[own], ".", markersize=3)
+        axes.set(ylabel=run.shown.label(f"vertical force {label}", "N/m"))
         axes.yaxis.label.set_fontsize(8)
-    lower.set(xlabel="x [mm], lower half of the structure")
-    upper.set_title(f"{run.title}, t = {float(run.structure['time']):g} s", fontsize=10)
+    lower.set(xlabel=run.shown.label("x, lower half of the structure", "mm"))
+    upper.set_title(f"{run.title}, t = {float(run.structure['time']):g}{run.shown.after('s')}", fontsize=10)
     return figure
 
 
@@ -233,8 +244,11 @@ def neutral_axis(run: _Files) -> Figure | None:
     order = np.argsort(points[axis, 0])
     x, w = points[axis, 0][order], moved[axis][order]
     figure, axes = _new(run)
-    axes.plot(x - x[0], 1e6 * (w - (w[0] + (w[-1] - w[0]) * (x - x[0]) / (x[-1] - x[0]))), ".-", markersize=4)
-    axes.set(xlabel="along the beam [m]", ylabel="deflection relative to the ends [um]")
+    bent = w - (w[0] + (w[-1] - w[0]) * (x - x[0]) / (x[-1] - x[0]))
+    axes.plot(x - x[0], run.shown.number(bent, "um"), ".-", markersize=4)
+    axes.set(
+        xlabel=run.shown.label("along the beam", "m"), ylabel=run.shown.label("deflection relative to the ends", "um")
+    )
     return figure
 
 
@@ -252,13 +266,13 @@ def ledger(run: _Files) -> Figure | None:
     for name, change in changes.items():
         if np.abs(change).max() > 0.01 * largest:
             upper.plot(run.time, change, label=name.replace("_", " "), linewidth=1.0)
-    upper.set(ylabel="change since the start [J/m]")
+    upper.set(ylabel=run.shown.label("change since the start", "J/m"))
     upper.legend(fontsize=7, ncols=2)
     upper.set_title(f"{run.title}: energy ledger", fontsize=10)
     lower.plot(run.time, run.history["ledger_error"], "k", linewidth=1.0, label="error of the sum")
     if "interface_residual" in run.history:
         lower.plot(run.time, run.history["interface_residual"], linewidth=1.0, label="interface residual")
-    lower.set(xlabel="time [s]", ylabel="error [J/m]")
+    lower.set(xlabel=run.shown.label("time", "s"), ylabel=run.shown.label("error", "J/m"))
     lower.legend(fontsize=7)
     return figure
 
@@ -270,7 +284,7 @@ def vibration(run: _Files) -> Figure | None:
     figure, axes = _new(run)
     axes.plot(run.time, run.history["structure_strain"], label="strain energy", linewidth=0.9)
     axes.plot(run.time, run.history["structure_kinetic"], label="kinetic energy", linewidth=0.9)
-    axes.set(xlabel="time [s]", ylabel="energy [J/m]")
+    axes.set(xlabel=run.shown.label("time", "s"), ylabel=run.shown.label("energy", "J/m"))
     axes.legend()
     return figure
 

@@ -13,6 +13,7 @@ from coupled.build import Built
 from coupled.report.contact import contact_numbers
 from coupled.report.preset import preset_sentences
 from coupled.report.quantities import quantity_lines
+from coupled.report.units import Shown
 from coupled.running.observe import Observation
 from coupled.scene import Scene
 from coupled.step import limits_of
@@ -104,25 +105,29 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path, scene: Sce
     """The lines printed at the end of a run, also of one that an earlier version made, and its quantities."""
     summary = dict.fromkeys(ADDED, 0.0) | summary
     wall, in_contact = summary["wall_seconds"], summary["network_dt_ratio"] > 0.0
-    lines = [f"{summary['title']}: {summary['simulated_seconds']:g} s simulated in {wall:.1f} s"]
+    shown = Shown(scene.units if scene is not None else "SI")
+    force, energy = shown.after("N/m"), shown.after("J/m")
+    simulated = f"{summary['simulated_seconds']:g}{shown.after('s')}"
+    lines = [f"{summary['title']}: {simulated} simulated in {wall:.1f} s"]
     if "applied_y" in summary:
+        drop, stress = shown.number(summary["centroid_drop"], "mm"), shown.number(summary["max_von_mises"], "MPa")
+        what = "drive" if summary["kind"] == "rigid" else "applied load"
         lines += [
-            f"  reaction of the grains   {summary['reaction_y']:12.2f} N/m   against {summary['applied_y']:.2f} N/m of "
-            f"{'drive' if summary['kind'] == 'rigid' else 'applied load'}; largest {summary['reaction_y_max']:.2f} N/m",
-            f"  centroid drop            {1e3 * summary['centroid_drop']:12.3f} mm    rotation "
-            f"{summary['rotation']:.4f} rad",
-            f"  largest von Mises        {summary['max_von_mises'] / 1e6:12.4f} MPa   largest strain "
+            f"  reaction of the grains   {summary['reaction_y']:12.2f}{force}   against "
+            f"{summary['applied_y']:.2f}{force} of {what}; largest {summary['reaction_y_max']:.2f}{force}",
+            f"  centroid drop            {drop:12.3f}{shown.after('mm')}    rotation {summary['rotation']:.4f} rad",
+            f"  largest von Mises        {stress:12.4f}{shown.after('MPa')}   largest strain "
             f"{summary['max_strain']:.3g}",
         ]
     lines += [
         f"  energy-ledger error      {summary['ledger_relative_error']:12.2e}       of "
-        f"{summary['energy_turned_over']:.4g} J/m turned over",
+        f"{summary['energy_turned_over']:.4g}{energy} turned over",
         f"  momentum residual        {summary['momentum_residual_max']:12.2e}       of the contact forces",
     ]
     if summary["interface_work"]:
         lines.append(
-            f"  interface residual       {summary['interface_residual']:12.2e} J/m   "
-            f"{summary['interface_residual_share']:.2e} of {summary['interface_work']:.4g} J/m exchanged"
+            f"  interface residual       {summary['interface_residual']:12.2e}{energy}   "
+            f"{summary['interface_residual_share']:.2e} of {summary['interface_work']:.4g}{energy} exchanged"
         )
     if summary["moment_dropped_share"]:
         lines.append(
@@ -148,7 +153,7 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path, scene: Sce
             "steps not settled" + (f", by {farthest:.1g} of the motion at most" if unsettled else "")
         )
     if scene is not None:
-        lines += quantity_lines(scene.quantities, summary.get("quantities", {}))
+        lines += quantity_lines(scene.quantities, summary.get("quantities", {}), scene.units)
         lines += [f"  {sentence}" for sentence in preset_sentences(scene)]
     parts = ", ".join(f"{name} {seconds:.1f}" for name, seconds in summary["wall_seconds_by_part"].items() if seconds)
     lines.append(f"  wall time [s]            {parts}")

@@ -20,9 +20,9 @@ class Observation:
     balance: Balance
     look: ContactLook | None
 
-    def row(self) -> dict[str, float]:
-        """Numbers by name with unit, for the history."""
-        return {f"{name} [{unit_of(name)}]": value for name, value in self.numbers.items()}
+    def row(self, units: str = "SI") -> dict[str, float]:
+        """Numbers by name with unit, for the history of a scene whose key `units` is given."""
+        return {f"{name} [{unit_of(name, units)}]": value for name, value in self.numbers.items()}
 
 
 def observe(model: Model, start: dict[str, float] | None) -> Observation:

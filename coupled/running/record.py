@@ -124,7 +124,7 @@ class Record:
 
         def put() -> None:
             if row:
-                self.writers.history.write(seen.row())
+                self.writers.history.write(seen.row(self.built.scene.units))
             if frame:
                 self.writers.write_frame(self.model, seen, fields)
 

@@ -52,8 +52,10 @@ _GRAIN_ENERGIES = (
 _STRUCTURE_ENERGIES = ("structure_kinetic", "structure_strain", "structure_loss_rayleigh", "loads_work")
 
 
-def unit_of(column: str) -> str:
-    """Unit of a column of the history."""
+def unit_of(column: str, units: str = "SI") -> str:
+    """Unit of a column of the history of a scene whose key `units` is given."""
+    if units != "SI":
+        return "-"
     if column.startswith("intruder_"):
         return "m/s" if column.endswith(("_vx", "_vy")) else "m"
     return UNITS.get(column, ENERGY)

@@ -240,7 +240,7 @@ def _written(case: Case, plan: Plan, rans: list[Ran], out: Path) -> Study:
     rans = rans + left
     found = references(rans, case.quantities, chance=bool(case.seeds))
     judged = judge_all(rans, found, chance=bool(case.seeds))
-    units = {quantity.name: unit_shown(quantity) for quantity in case.quantities}
+    units = {quantity.name: unit_shown(quantity, case.base.units) for quantity in case.quantities}
     pictures = {name: out / f"pareto_{name}.png" for name in judged}
     title = case.base.title
     for name, items in judged.items():

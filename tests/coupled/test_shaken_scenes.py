@@ -13,7 +13,7 @@ from same_run import assert_same_run
 
 from coupled.balance import take_balance
 from coupled.build import build
-from coupled.output.history import read_history
+from coupled.output.history import History, read_history
 from coupled.running.run import run_scene
 from coupled.scene import Scene, load_scene
 from coupled.step import with_step
@@ -117,6 +117,30 @@ def test_run_taken_up_in_the_middle_of_a_period_has_the_same_bits(tmp_path: Path
     out = run_scene(Scene.model_validate(part), out=tmp_path / "part", threads=1, progress=False)
     run_scene(Scene.model_validate(tables), out=out, threads=1, progress=False, resume=True)
     assert_same_run(whole, out)
+
+
+@pytest.mark.parametrize(("units", "length"), [("dimensionless", "-"), ("SI", "m")])
+def test_numbers_without_units_are_told_without(
+    units: str, length: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rise = {"name": "rise", "kind": "rise", "column": "intruder_y"}
+    scene = Scene.model_validate(changed(FEW, {"units": units, "time.duration": 0.2}) | {"quantities": [rise]})
+    out = run_scene(scene, out=tmp_path / "run", threads=1, progress=False)
+    heading, told = (out / "history.csv").read_text().splitlines()[0].split(","), capsys.readouterr().out
+    assert f"intruder_y [{length}]" in heading and len([name for name in heading if name.endswith("[-]")]) > 3
+    assert all(name.endswith("[-]") for name in heading) == (units == "dimensionless")
+    assert (" s simulated" in told, "J/m" in told) == (units == "SI", units == "SI")
+    assert ("m" in next(line for line in told.splitlines() if "rise" in line).split()) == (units == "SI")
+
+
+def test_rows_go_on_under_headings_of_an_earlier_version(tmp_path: Path) -> None:
+    path = tmp_path / "history.csv"
+    History(path).write({"time [s]": 1.0, "intruder_y [m]": 2.0})
+    taken_up = History(path, keep_until=1.0)
+    taken_up.write({"intruder_y [-]": 4.0, "time [-]": 3.0})
+    assert taken_up.last_time == 3.0
+    seen = read_history(path)
+    assert seen["time"].tolist() == [1.0, 3.0] and seen["intruder_y"].tolist() == [2.0, 4.0]
 
 
 def test_period_in_steps_is_a_time_that_a_finer_step_leaves() -> None:
