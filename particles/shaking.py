@@ -101,3 +101,15 @@ class Shaking:
         # one part in 1e9 keeps a stop at a whole number of periods from adding another by round-off
         periods = math.ceil((self.stop - self.start) / self.period * (1.0 - 1e-9))
         return self.start + periods * self.period
+
+
+def shaking_of(shaking: Shaking | None, walls: Sequence[Wall]) -> ShakingNumbers | None:
+    """What the kernels need of the shaking; refused if there is no wall to shake, or walls and no shaking."""
+    shaken = [wall.name for wall in walls if wall.shaken]
+    if (shaking is None) == bool(shaken):
+        raise ParticleError(
+            f"{shaken[0]} is shaken, but nothing says how: give shaking=Shaking(...)"
+            if shaken
+            else "shaking moves no wall: give Wall(..., shaken=True)"
+        )
+    return None if shaking is None else shaking.numbers(walls)

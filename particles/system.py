@@ -20,14 +20,13 @@ from particles.kernels.layout import (
     GrainArrays,
     LeadArrays,
     LedgerArrays,
-    ShakingNumbers,
 )
 from particles.kernels.motion import kick
 from particles.look import ContactLook
 from particles.neighbours import LISTS_PER_SORT, ContactList, block_starts
 from particles.passing import Passage, deepest_passage
 from particles.periodic import checked_period
-from particles.shaking import Shaking
+from particles.shaking import Shaking, shaking_of
 from particles.snapshot import Snapshot
 from particles.state import PRECISIONS, Grains
 from particles.threads import use_threads
@@ -115,7 +114,7 @@ class ParticleSystem:
         self.contact = contact
         self.walls = tuple(walls)
         self.shaking = shaking
-        self._shaken = _shaking_of(shaking, self.walls)
+        self._shaken = shaking_of(shaking, self.walls)
         self.time_step = float(time_step)
         if scheme not in SCHEMES:
             raise ParticleError(f"scheme {scheme!r} must be one of {', '.join(SCHEMES)}")
@@ -146,8 +145,7 @@ class ParticleSystem:
         options = {"ledger": ledger, "period": self.period, "facets": self.facets}
         options |= {"precision": precision, "skin_factor": skin_factor, "smallest": float(grains.radius.min())}
         self.list = ContactList(contact, list(walls), **options)
-        self.passage = Passage()
-        self._started = False
+        self._started, self.passage = False, Passage()
 
     # -- stepping -----------------------------------------------------------------------------
 
@@ -400,15 +398,3 @@ def continued(saved: Mapping[str, NDArray[Any]], grains: Grains, contact: Contac
     system._started = True
     system._rebuild()
     return system
-
-
-def _shaking_of(shaking: Shaking | None, walls: Sequence[Wall]) -> ShakingNumbers | None:
-    """What the kernels need of the shaking; refused if there is no wall to shake, or walls and no shaking."""
-    shaken = [wall.name for wall in walls if wall.shaken]
-    if (shaking is None) == bool(shaken):
-        raise ParticleError(
-            f"{shaken[0]} is shaken, but nothing says how: give shaking=Shaking(...)"
-            if shaken
-            else "shaking moves no wall: give Wall(..., shaken=True)"
-        )
-    return None if shaking is None else shaking.numbers(walls)

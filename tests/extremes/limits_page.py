@@ -18,7 +18,7 @@ Every axis is pushed until it breaks. A run must end in one of three ways: *righ
 conservation law or a scaling law; *refused* at the start in a sentence; *stopped* by a watchdog in a sentence, with the
 last good state on disk. Each is a run of the command `leito` in a process with limits of time and memory; all files
 that it leaves are searched for numbers that are not finite. Where an axis has a number, the changes are closed in on by
-bisection.
+bisection. Any other end is a defect; the map has a column for it while there is one.
 
 ## Map
 
@@ -30,15 +30,16 @@ bisection.
 
 def page(found: Sequence[tuple[Axis, list[Verdict]]]) -> str:
     """The whole page."""
+    ends = [*GOOD, *sorted({verdict.outcome for _, verdicts in found for verdict in verdicts} - set(GOOD))]
     rows = [
-        [f"[{axis.name}](#{_anchor(axis.name)})", *(ranges(verdicts, axis, end) for end in GOOD)]
+        [f"[{axis.name}](#{_anchor(axis.name)})", *(ranges(verdicts, axis, end) for end in ends)]
         for axis, verdicts in found
     ]
     parts: dict[str, list[str]] = {}
     for axis, verdicts in found:
         parts.setdefault(axis.part, []).append(_section(axis, verdicts))
     text = "\n\n".join(f"## {name}\n\n" + "\n\n".join(sections) for name, sections in parts.items())
-    return TEXT.format(map=_table(["axis", *GOOD], rows), parts=text)
+    return TEXT.format(map=_table(["axis", *ends], rows), parts=text)
 
 
 def _section(axis: Axis, verdicts: list[Verdict]) -> str:
