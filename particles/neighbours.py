@@ -110,10 +110,8 @@ class ContactList:
         self.pairs = self._pair_arrays(*rows, block_starts(grains.n_free, len(grains)))
         if first:
             self._require_apart(grains)
-        else:
-            cells.carry_pairs(
-                old_of, before.start, before.partner, history_of(before), *rows[::2], history_of(self.pairs)
-            )
+        moved = old_of[:0] if first else old_of  # nothing to carry yet, but the code is loaded before the first step
+        cells.carry_pairs(moved, before.start, before.partner, history_of(before), *rows[::2], history_of(self.pairs))
         self._rebuild_walls(grains, old_of)
         if self.facets is not None:
             self.facets.rebuild(grains, old_of, self.skin, block_starts(grains.n_free, len(grains)))

@@ -175,6 +175,8 @@ class ParticleSystem:
     def advance(self, steps: int) -> None:
         """Take `steps` leapfrog steps, making new contact lists where needed; 0 only loads the compiled code."""
         self.start()
+        if not steps:  # nothing has passed yet
+            deepest_passage(self.grains, self._arrays(), self.list, self.time_step, self.passage)
         self.impulse[:] = 0.0
         if self.facets is not None:
             self.facets.arrays.impulse[:] = 0.0

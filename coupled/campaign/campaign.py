@@ -13,6 +13,7 @@ from coupled.campaign.progress import CampaignProgress
 from coupled.campaign.task import Outcome, Task
 from coupled.campaign.worker import WISH
 from coupled.errors import LeitoError
+from coupled.output.lock import require_place
 from coupled.running.interrupt import Stop
 from coupled.running.launch import ranks
 
@@ -50,8 +51,8 @@ def run_all(
     Raises
     ------
     LeitoError
-        If two tasks have one folder, or one holds the run of another scene or, without `resume`, any; before
-        anything runs.
+        If two tasks have one folder, or one holds the run of another scene or, without `resume`, any, or cannot be
+        a folder; before anything runs.
     """
     if ranks() > 1:
         return _on_ranks(tasks, progress, resume, overwrite)
@@ -83,6 +84,8 @@ def _prepared(tasks: Sequence[Task], resume: bool, overwrite: bool) -> dict[obje
     for folder in folders:
         if folders.count(folder) > 1:
             raise LeitoError(f"{folder} is the folder of two runs; give each its own")
+    for task in tasks:
+        require_place(task.folder)
     if overwrite:
         return {}
     for task in tasks:

@@ -39,6 +39,19 @@ def only_process(path: Path, wait: Callable[[], None] | None = None) -> Iterator
         os.close(handle)
 
 
+def require_place(path: Path) -> None:
+    """Refuse a folder that is a file, or would have to be made inside of one.
+
+    Raises
+    ------
+    LeitoError
+        Naming the file.
+    """
+    there = next(place for place in (path, *path.absolute().parents) if place.exists())
+    if not there.is_dir():
+        raise LeitoError(f"{there} is a file; give another folder with --out")
+
+
 def _held(path: Path, wait: Callable[[], None] | None) -> int:
     told = False
     while True:
@@ -64,8 +77,7 @@ def _held(path: Path, wait: Callable[[], None] | None) -> int:
 
 
 def _opened(path: Path) -> int:
-    if path.exists() and not path.is_dir():
-        raise LeitoError(f"{path} is a file; give another folder with --out")
+    require_place(path)
     try:
         path.mkdir(parents=True, exist_ok=True)
         return os.open(path, os.O_RDONLY)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from coupled.errors import LeitoError
+from coupled.output.lock import require_place
 from coupled.output.provenance import write_json
 from coupled.report.quantities import unit_shown
 from coupled.running.launch import ranks
@@ -183,6 +184,7 @@ def _knobs(base: Scene, wishes: Wishes) -> list[Knob]:
 
 def _take(out: Path, resume: bool, overwrite: bool) -> None:
     """Make the folder, or clear what is to be overwritten."""
+    require_place(out)
     ours = (RUNS, TRIAL, TEXT, table.CSV)
     holds = any((out / name).exists() for name in ours)
     if holds and not (resume or overwrite):

@@ -104,6 +104,9 @@ def test_a_folder_of_another_scene_and_one_for_two_are_refused_before_anything_r
         run_all([task(grains, tmp_path / "new"), other], progress=False)
     with pytest.raises(LeitoError, match="one is the folder of two runs"):
         run_all([other, other], progress=False)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(LeitoError, match="file is a file; give another folder"):
+        run_all([task(grains, tmp_path / "new"), task(grains, tmp_path / "file" / "run")], progress=False)
     assert not (tmp_path / "new").exists()
 
 

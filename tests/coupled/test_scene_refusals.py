@@ -66,7 +66,12 @@ BAD: dict[str, Case] = {
         "grains.spacing",
         ("at least 1",),
     ),
-    "precision that is none": (GRAINS, {"grains.precision": "float16"}, "grains.precision", ("'float64' or 'float32'",)),
+    "precision that is none": (
+        GRAINS,
+        {"grains.precision": "float16"},
+        "grains.precision",
+        ("'float64' or 'float32'",),
+    ),
     "unknown wall": (GRAINS, {"box.walls": ["roof"]}, "box.walls.0", ("'lid'",)),
     "wall named twice": (GRAINS, {"box.walls": ["floor", "floor"]}, "box.walls", ("twice",)),
     "step above the limit": (
@@ -135,6 +140,18 @@ BAD: dict[str, Case] = {
         {"structure": GONE},
         "structure",
         ("missing", "an interface needs a structure"),
+    ),
+    "more cells than memory": (
+        TUBE,
+        {"structure.tube.around": 10_000_000},
+        "structure.tube.around",
+        ("above 10000000", "fewer cells"),
+    ),
+    "refined beyond memory": (
+        TUBE,
+        {"structure.refinement": 1e9},
+        "structure.tube.around",
+        ("above 10000000", "fewer cells"),
     ),
     "structure without interface": (
         TUBE,

@@ -187,6 +187,12 @@ def test_refusals(scene, wishes, words, tmp_path):
     assert not (tmp_path / "study" / "runs").exists()
 
 
+def test_a_file_in_place_of_the_folder_is_refused(tmp_path):
+    (tmp_path / "study").write_text("")
+    with pytest.raises(LeitoError, match="study is a file; give another folder"):
+        study(tmp_path, BEAM)
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

@@ -7,6 +7,7 @@ from typing import Any
 
 from coupled.scene.interface import Interface, RowUnder
 from coupled.scene.refusal import refusal
+from coupled.scene.rules.structure import check_cells
 from coupled.scene.scene import Scene
 from coupled.scene.shape import Shape
 
@@ -32,6 +33,7 @@ def refined(tables: dict[str, Any], scene: Scene, refinement: float, coarsening:
         if key in cells:
             cells[key] = max(fewest, _nearest(cells[key] * refinement))
     after = type(before).model_validate(cells)
+    check_cells(after)
     interface = scene.interface
     if interface is None or (interface.per_facet is None and interface.count is None):
         return

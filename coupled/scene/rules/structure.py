@@ -9,6 +9,7 @@ from coupled.scene.refusal import Plain, missing, refusal
 from coupled.scene.rules.loads import check_loads
 from coupled.scene.rules.theory import check_theory
 from coupled.scene.schemes import SCHEMES, Newmark
+from coupled.scene.shape import Shape, Tube
 from coupled.scene.structure import Structure
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ _ALLOWED: dict[_Kind, tuple[str, ...]] = {
     "rigid": ("path", "density"),
     "free_rigid": ("density", "loads"),
 }
+MOST_CELLS = 10_000_000  # a direct solver needs about 1 kB and more for each
 LARGEST_WAY = 0.5  # of the smallest grain's radius in a step, as the watchdogs have it
 _OPTIONAL = (*_ALLOWED["elastic"], "path")
 
@@ -75,6 +77,17 @@ def _check_shape(structure: Structure) -> None:
             "structure.tube.inner_radius",
             tube.inner_radius,
             f"must be less than outer_radius = {tube.outer_radius:g} m; reduce it",
+        )
+    check_cells(structure.shape)
+
+
+def check_cells(shape: Shape) -> None:
+    """Refuse a mesh that no machine has the memory for, before its facets are counted."""
+    name, many, few = ("tube", "around", "layers") if isinstance(shape, Tube) else ("beam", "along", "across")
+    number, other = getattr(shape, many), getattr(shape, few)
+    if number * other > MOST_CELLS:
+        raise refusal(
+            f"structure.{name}.{many}", number, f"times {few} = {other} is above {MOST_CELLS}; take fewer cells"
         )
 
 
