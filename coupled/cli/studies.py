@@ -44,7 +44,7 @@ def study(
     refuse_both(resume, overwrite)
     if budget is not None and not budget > 0.0:
         raise LeitoError(f"--budget {budget:g}: must be greater than 0; give the seconds that all runs may take")
-    from coupled.study.ask import knob_names, knob_values
+    from coupled.study.ask import knob_names, knob_values, reference_keys
     from coupled.study.study import Wishes, run_study
     from coupled.study.table import HEADER
 
@@ -53,7 +53,7 @@ def study(
         accuracy=accuracy,
         knobs=None if knobs is None else knob_names(knobs),
         values=knob_values(values or ()),
-        reference=tuple(reference or ()),
+        reference=reference_keys(reference or ()),
         seeds=seeds,
         jobs=jobs,
         budget=budget,
@@ -67,5 +67,6 @@ def study(
         progress=progress,
     )
     print_table(HEADER, done.rows())
-    print("\n".join(done.without_result()))
+    for line in done.without_result():
+        print(line)
     print(f"written: {done.folder}/study.csv, study.md and a picture per quantity")

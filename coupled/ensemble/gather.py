@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -109,12 +110,17 @@ def table(results: Sequence[Result], means: Sequence[Mean]) -> tuple[tuple[str, 
         (
             *(value for _, value in mean.combination.values),
             mean.quantity,
-            *_shown(mean, "{:.6g}".format),
+            *_shown(mean, _six_digits),
             _spoken(mean.unit),
         )
         for mean in means
     ]
     return (*keys, "quantity", "mean", "+- (95 %)", "samples", "unit"), rows
+
+
+def _six_digits(number: float) -> str:
+    """A number for a terminal; the interval of a single sample has no end."""
+    return f"{number:.6g}" if math.isfinite(number) else "?"
 
 
 def _spoken(unit: str) -> str:

@@ -16,6 +16,7 @@ from coupled.loads import load_rows
 from coupled.output.folder import SUMMARY
 from coupled.report import cautions
 from coupled.report.contact import contact_rows
+from coupled.report.duration import spoken
 from coupled.report.need_rows import need_rows
 from coupled.report.needs import without_need
 from coupled.report.paired import measured_shares
@@ -169,12 +170,12 @@ def _cost_rows(scene: Scene, built: Built, trial: Trial) -> list[Row]:
     rows = [
         ("cost", "steps", f"{total}"),
         ("cost", "time per step", f"{1e6 * per_step:.0f} us"),
-        ("cost", "estimated time", _spoken(per_step * total)),
+        ("cost", "estimated time", spoken(per_step * total)),
         ("cost", "memory of the state", f"{_state_bytes(model) / 1e6:.1f} MB"),
     ]
     if scene.bed is not None:
         rows.append(
-            ("cost", "and, once, to settle its bed", _spoken(per_step * scene.bed.time.duration / scene.bed.time.step))
+            ("cost", "and, once, to settle its bed", spoken(per_step * scene.bed.time.duration / scene.bed.time.step))
         )
     return rows
 
@@ -187,9 +188,3 @@ def _state_bytes(model: Any) -> int:
     if model.structure is not None:
         size += sum(array.nbytes for array in model.structure.state().values())
     return size
-
-
-def _spoken(seconds: float) -> str:
-    if seconds < 120.0:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} h"

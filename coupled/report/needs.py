@@ -92,7 +92,8 @@ def _walls(scene: Scene, built: Built) -> Iterator[Needless]:
     if scene.first_grains is None:
         yield Needless("box.walls", "meet free grains alone, and there are none; remove [box]", m.WALLS)
     elif "lid" in box.walls and _stays_below_the_lid(scene):
-        yield Needless("box.walls", 'has a lid that grains at rest under gravity cannot reach; take out "lid"', m.WALLS)
+        why = 'has a lid, and grains start at rest below it and fall: only others can throw one so high; take out "lid"'
+        yield Needless("box.walls", why, m.WALLS)
 
 
 def _stays_below_the_lid(scene: Scene) -> bool:

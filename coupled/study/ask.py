@@ -1,11 +1,12 @@
-"""Values of knobs as a user asks for them: ``step=2,1,0.5``."""
+"""What a user asks of a study: knobs, values of knobs (``step=2,1,0.5``), keys of the reference."""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from coupled.errors import LeitoError
+from coupled.scene.overrides import parse_override
 from coupled.scene.refusal import nearest
 from coupled.study.knobs import BY_NAME
 from coupled.study.turns import Value
@@ -35,6 +36,22 @@ def knob_values(texts: Iterable[str]) -> dict[str, tuple[Value, ...]]:
             raise LeitoError(f"--values {text}: {name} is given twice; give all its values at once")
         found[name] = tuple(_value(text, name, part.strip()) for part in listed.split(","))
     return found
+
+
+def reference_keys(texts: Sequence[str]) -> tuple[str, ...]:
+    """Keys of the reference, as ``--set`` takes them.
+
+    Raises
+    ------
+    LeitoError
+        For a text that is none.
+    """
+    for text in texts:
+        try:
+            parse_override(text)
+        except LeitoError as error:
+            raise LeitoError(str(error).replace("--set", "--reference")) from None
+    return tuple(texts)
 
 
 def _value(text: str, name: str, part: str) -> Value:

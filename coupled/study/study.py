@@ -12,9 +12,10 @@ from pathlib import Path
 from coupled.errors import LeitoError
 from coupled.output.lock import require_place
 from coupled.output.provenance import write_json
+from coupled.report.duration import spoken
 from coupled.report.quantities import unit_shown
 from coupled.running.launch import ranks
-from coupled.scene import Scene, load_scene
+from coupled.scene import Scene, dump_scene, load_scene
 from coupled.scene.quantities import Quantity
 from coupled.study import table
 from coupled.study.combine import combinations
@@ -199,12 +200,14 @@ def _take(out: Path, resume: bool, overwrite: bool) -> None:
 
 
 def _trial(base: Scene, out: Path) -> Trial:
-    """The trial of this folder: a study that goes on keeps its plan."""
-    path = out / TRIAL
+    """The trial of this folder: a study that goes on with the same scene keeps its plan."""
+    path, scene = out / TRIAL, dump_scene(base)
     if path.exists():
-        return Trial(**json.loads(path.read_text()))
+        kept = json.loads(path.read_text())
+        if kept.pop("scene", None) == scene:
+            return Trial(**kept)
     trial = try_out(base)
-    write_json(path, trial._asdict())
+    write_json(path, trial._asdict() | {"scene": scene})
     return trial
 
 
@@ -214,14 +217,8 @@ def _announcement(plan: Plan, terms: Terms, out: Path) -> str:
     left = f"; {len(plan.left_out)} more do not fit into the budget" if plan.left_out else ""
     return (
         f"study of {count} settings{samples}, {count * terms.samples} runs, {terms.workers} at a time: about "
-        f"{_spoken(plan.seconds)} and some seconds per run to load and build{left}; results in {out}"
+        f"{spoken(plan.seconds)} and some seconds per run to load and build{left}; results in {out}"
     )
-
-
-def _spoken(seconds: float) -> str:
-    if seconds < 120.0:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} h"
 
 
 def _further(case: Case, rans: Sequence[Ran], terms: Terms, plan: Plan) -> list[Setting]:

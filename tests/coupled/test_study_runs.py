@@ -15,7 +15,10 @@ import pytest
 import tomli_w
 
 from coupled.errors import LeitoError
-from coupled.study.ask import knob_values
+from coupled.scene import Scene
+from coupled.study import study as study_module
+from coupled.study.ask import knob_values, reference_keys
+from coupled.study.cost import Trial
 from coupled.study.errors import observed_order
 from coupled.study.study import Wishes, run_study
 
@@ -187,6 +190,20 @@ def test_refusals(scene, wishes, words, tmp_path):
     assert not (tmp_path / "study" / "runs").exists()
 
 
+def test_a_study_that_goes_on_with_another_scene_is_timed_anew(tmp_path, monkeypatch):
+    tried: list[float] = []
+
+    def try_out(scene):
+        tried.append(scene.time.duration)
+        return Trial(seconds=scene.time.duration, grains=0.0, structure=1.0)
+
+    monkeypatch.setattr(study_module, "try_out", try_out)
+    short, longer = (Scene.model_validate(BEAM | {"time": BEAM["time"] | {"duration": t}}) for t in (0.0216, 0.216))
+    for scene in (short, short, longer):
+        assert study_module._trial(scene, tmp_path).seconds == scene.time.duration
+    assert tried == [0.0216, 0.216]
+
+
 def test_a_file_in_place_of_the_folder_is_refused(tmp_path):
     (tmp_path / "study").write_text("")
     with pytest.raises(LeitoError, match="study is a file; give another folder"):
@@ -209,6 +226,11 @@ def test_values_that_are_refused(text, words):
     with pytest.raises(LeitoError) as refused:
         knob_values([text])
     assert words in str(refused.value)
+
+
+def test_a_reference_that_is_no_key_is_told_by_its_own_option():
+    with pytest.raises(LeitoError, match="--reference step: write it as key=value"):
+        reference_keys(["time.step=1e-6", "step"])
 
 
 def test_values_of_one_knob_are_given_once():
