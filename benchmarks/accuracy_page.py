@@ -25,14 +25,15 @@ Written by `make bench ARGS=accuracy` in {minutes:.0f} min on {cores} cores of {
 A study (`leito study`) of each scene, shortened where that is said. Errors are those of a quantity against its closed
 form or the finest setting of its scene (step and mesh twice as fine; four times for the first three), over its
 magnitude. In scenes with grains they are means over five seeds (three for the trench), +- Student's 95 % interval of
-the differences seed by seed; an error inside its interval is not resolved. Times are wall seconds of one run on one
-core, beds and compilation not counted.
+the differences seed by seed; an error inside its interval is not resolved. Times are processor seconds of one run on
+one core, which are its wall time on a quiet machine; beds and compilation are not counted. The pictures of a single
+scene show wall time as it was measured, two runs at a time.
 
 {presets}
 
 ![accuracy.png](accuracy.png)
 
-Errors of all quantities below against the wall time over that of the scene as it is; open: not resolved, or below what
+Errors of all quantities below against the time over that of the scene as it is; open: not resolved, or below what
 the reference knows itself; the marker then stands at the bound.
 
 {scenes}
@@ -74,13 +75,13 @@ def _scene(path: Path, scene: str, said: str, study: Study) -> str:
 
 def _table(study: Study) -> str:
     quantities = list(study.judged)
-    head = ["setting", "wall [s]", "times as fast", *(f"{name} [{study.units[name]}]" for name in quantities)]
+    head = ["setting", "time [s]", "times as fast", *(f"{name} [{study.units[name]}]" for name in quantities)]
     lines = [f"| {' | '.join(head)} |", "|" + "---|" * len(head)]
     base = _base(study)
     for name in _shown(study):
         items = [next(item for item in study.judged[quantity] if item.setting.name == name) for quantity in quantities]
-        wall = items[0].ran.wall_seconds
-        cells = [items[0].setting.accuracy or name, f"{wall:.3g}", f"{base / wall:.2g}", *map(_cell, items)]
+        seconds = items[0].ran.cpu_seconds
+        cells = [items[0].setting.accuracy or name, f"{seconds:.3g}", f"{base / seconds:.2g}", *map(_cell, items)]
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
 
@@ -93,8 +94,8 @@ def _shown(study: Study) -> list[str]:
 
 
 def _base(study: Study) -> float:
-    """Wall time of the scene as it is [s]."""
-    return next(ran.wall_seconds for ran in study.rans if ran.setting.role == "base")
+    """Processor time of the scene as it is [s]."""
+    return next(ran.cpu_seconds for ran in study.rans if ran.setting.role == "base")
 
 
 def _cell(item: Judged) -> str:
@@ -117,7 +118,7 @@ def _pictures(path: Path, scene: str, study: Study) -> list[str]:
 
 
 def _draw(path: Path, done: Sequence[Done]) -> None:
-    """Every preset of every scene and quantity: error against relative wall time."""
+    """Every preset of every scene and quantity: error against relative time."""
     figure, axes = plt.subplots(figsize=(8.0, 4.8), layout="constrained")
     for _, _, study in done:
         base = _base(study)
@@ -126,9 +127,9 @@ def _draw(path: Path, done: Sequence[Done]) -> None:
             sure = item.verdict == "resolved"
             height = max(item.known, 1e-7)
             fill = colour if sure else "white"
-            axes.plot(item.ran.wall_seconds / base, height, marker, color=colour, mfc=fill, ms=6)
+            axes.plot(item.ran.cpu_seconds / base, height, marker, color=colour, mfc=fill, ms=6)
     axes.set(
-        xscale="log", yscale="log", xlabel="wall time over that of the scene as it is [-]", ylabel="error [-]",
+        xscale="log", yscale="log", xlabel="time over that of the scene as it is [-]", ylabel="error [-]",
         title=f"Presets on {len(done)} scenes that ship",
     )  # fmt: skip
     axes.xaxis.set_major_formatter(PLAIN)
