@@ -44,15 +44,21 @@ def surface(x: Floats, y: Floats, radius: Floats, left: float, right: float) -> 
     Raises
     ------
     QuantityError
-        If there are no discs.
+        If fewer than two of the places have a disc.
     """
+    if len(radius) == 0:
+        raise _nothing_between(left, right)
     count = max(2, math.ceil((right - left) / (2.0 * float(radius.mean())) * PER_DIAMETER))
     places = left + (np.arange(count) + 0.5) * (right - left) / count
     height = envelope(x, y, radius, places)
     covered = np.isfinite(height)
-    if not covered.any():
-        raise QuantityError(f"no grains lie between x = {left:g} and {right:g} m")
+    if np.count_nonzero(covered) < 2:
+        raise _nothing_between(left, right)
     return places[covered], height[covered]
+
+
+def _nothing_between(left: float, right: float) -> QuantityError:
+    return QuantityError(f"no grains lie between x = {left:g} and {right:g} m")
 
 
 def mean_height(x: Floats, y: Floats, radius: Floats, left: float, right: float) -> float:

@@ -232,16 +232,20 @@ def test_drop_and_bed_of_falling_discs(tmp_path: Path) -> None:
             {"name": "when", "kind": "when", "column": "time", "other": "highest_grain", "changes_by": -0.0125},
             {"name": "packing", "kind": "packing_fraction", "bottom": 0.5, "top": 1.45},
             {"name": "angle", "kind": "surface_angle", "left": 0.2, "right": 0.7},
+            {"name": "nowhere", "kind": "surface_angle", "left": 0.9, "right": 1.0},
         ],
         "output": {"figures": False, "history_interval": 1e-3},
     }
     scene = Scene.model_validate(tables)
     run_scene(scene, out=tmp_path / "fall", threads=1, progress=False)
-    fall, when, packing, angle = (evaluate(quantity, tmp_path / "fall") for quantity in scene.quantities)
+    fall, when, packing, angle = (evaluate(quantity, tmp_path / "fall") for quantity in scene.quantities[:4])
     assert fall == pytest.approx(0.05, rel=1e-9)  # the leapfrog is exact for a constant force
     assert when == pytest.approx(0.05, abs=2.5e-6)  # curvature g h^2/8 of a piece over the speed, 0.5 m/s
     assert packing == pytest.approx(1.5 * math.pi * 0.01 / 0.95, rel=1e-9)  # one disc whole, one cut through its centre
     assert angle > 0.0
+    assert json.loads((tmp_path / "fall" / "summary.json").read_text())["quantities"]["nowhere"] is None
+    with pytest.raises(QuantityError, match="nowhere of .* is not known: no grains lie between x = 0.9 and 1 m"):
+        evaluate(scene.quantities[4], tmp_path / "fall")
 
 
 def test_bed_with_periodic_sides_goes_on_beyond_them(tmp_path: Path) -> None:
