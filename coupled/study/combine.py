@@ -42,13 +42,13 @@ def combinations(
 
 def _savings(judged: Mapping[str, Sequence[Judged]], values: Mapping[str, tuple[Knob, Value]]) -> list[str]:
     """Names of the fastest setting of each knob that loses nothing in any quantity, the best first."""
-    bases = {quantity: _base(items) for quantity, items in judged.items()}
+    bases = {quantity: base for quantity, items in judged.items() if (base := _base(items)) is not None}
     rates: dict[str, tuple[float, str]] = {}
     for name, (knob, _) in values.items():
         here = [
-            (item, bases[quantity]) for quantity, items in judged.items() for item in items if item.setting.name == name
+            (item, base) for quantity, base in bases.items() for item in judged[quantity] if item.setting.name == name
         ]
-        if not here or any(item.known > WORSE * base.known for item, base in here):
+        if not here or len(here) < len(bases) or any(item.known > WORSE * base.known for item, base in here):
             continue
         rate = here[0][0].ran.wall_seconds / here[0][1].ran.wall_seconds
         if rate < min(1.0, rates.get(knob.name, (1.0, ""))[0]):
@@ -56,8 +56,8 @@ def _savings(judged: Mapping[str, Sequence[Judged]], values: Mapping[str, tuple[
     return [name for _, name in sorted(rates.values())]
 
 
-def _base(items: Sequence[Judged]) -> Judged:
-    return next(item for item in items if item.setting.role == "base")
+def _base(items: Sequence[Judged]) -> Judged | None:
+    return next((item for item in items if item.setting.role == "base"), None)
 
 
 def _together(turned: Sequence[tuple[Knob, Value]], load: Load, trial: Trial) -> Setting | None:

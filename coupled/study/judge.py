@@ -13,27 +13,33 @@ from coupled.study.setting import Ran
 
 
 def references(rans: Sequence[Ran], quantities: Sequence[Quantity], *, chance: bool) -> dict[str, Reference]:
-    """The reference of each quantity: its closed form, or the finest setting that came to its end.
+    """The reference of each quantity: its closed form, or the finest setting that came to its end and has it.
+
+    Quantities that no setting has, or that lack a reference beside others that do not, are left out.
 
     Raises
     ------
     LeitoError
-        If neither is there.
+        If there is nothing to compare, or nothing to compare with.
     """
-    return {quantity.name: _reference(rans, quantity, chance) for quantity in quantities}
+    known = [quantity for quantity in quantities if any(quantity.name in ran.values for ran in rans)]
+    if not known:
+        raise LeitoError(f"no setting of this study has any of its quantities: {rans[0].lacking}")
+    found = {quantity.name: _reference(rans, quantity, chance) for quantity in known}
+    there = {name: reference for name, reference in found.items() if reference is not None}
+    if not there:
+        finest = next((ran.lacking for ran in rans if ran.setting.role == "reference"), "it was not run")
+        raise LeitoError(f"the reference of this study has no {known[0].name}: {finest}; give another with --reference")
+    return there
 
 
-def _reference(rans: Sequence[Ran], quantity: Quantity, chance: bool) -> Reference:
+def _reference(rans: Sequence[Ran], quantity: Quantity, chance: bool) -> Reference | None:
     name = quantity.name
-    done = [ran for ran in rans if ran.done]
+    done = [ran for ran in rans if name in ran.values]
     finest = _finest(done, name, chance)
     if quantity.exact is not None:
         return _closed_form(finest, quantity, _scale(done, quantity, quantity.exact))
-    if finest is None:
-        missing = next((ran for ran in rans if ran.setting.role == "reference"), None)
-        why = f": {missing.message}" if missing is not None and missing.message else ""
-        raise LeitoError(f"the reference of this study did not come to its end{why}; give another one with --reference")
-    return replace(finest, scale=_scale(done, quantity, finest.mean))
+    return None if finest is None else replace(finest, scale=_scale(done, quantity, finest.mean))
 
 
 def _finest(done: Sequence[Ran], name: str, chance: bool) -> Reference | None:
@@ -71,6 +77,6 @@ def _scale(done: Sequence[Ran], quantity: Quantity, right: float) -> float:
 def judge_all(rans: Sequence[Ran], found: dict[str, Reference], *, chance: bool) -> dict[str, list[Judged]]:
     """Every setting that is done, by quantity."""
     return {
-        name: [judge(ran, name, reference, chance=chance) for ran in rans if ran.done]
+        name: [judge(ran, name, reference, chance=chance) for ran in rans if name in ran.values]
         for name, reference in found.items()
     }

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from coupled.campaign import Outcome
-from coupled.errors import LeitoError
+from coupled.errors import QuantityError
 from coupled.output import history
 from coupled.output.folder import SCENE, SUMMARY
 from coupled.quantities import evaluate
-from coupled.scene import Scene
 from coupled.study.setting import Ran, Setting
 
 
@@ -32,17 +31,17 @@ def came_to(setting: Setting, outcomes: Sequence[Outcome], base: Sequence[Path] 
             status = outcome.status if begun else "refused"
             return Ran(setting=setting, status=status, message=outcome.message)
     folders = [outcome.task.folder for outcome in outcomes]
-    try:
-        samples = [_values(outcome.task.scene, outcome.task.folder) for outcome in outcomes]
-    except LeitoError as error:
-        return Ran(setting=setting, status="failed", message=str(error))
+    values, lacking = _values(outcomes)
+    if not values:
+        return Ran(setting=setting, status="failed", message=lacking)
     count = len(outcomes)
     wall = sum(outcome.wall_seconds for outcome in outcomes) / count
     steps = sum(json.loads((folder / SUMMARY).read_text())["steps"] for folder in folders) / count
     return Ran(
         setting=setting,
         status="done",
-        values={name: tuple(sample[name] for sample in samples) for name in samples[0]},
+        message=lacking,
+        values=values,
         wall_seconds=wall,
         cpu_seconds=sum(outcome.cpu_seconds for outcome in outcomes) / count,
         steps_per_second=steps / wall if wall > 0.0 else float("inf"),
@@ -50,8 +49,15 @@ def came_to(setting: Setting, outcomes: Sequence[Outcome], base: Sequence[Path] 
     )
 
 
-def _values(scene: Scene, folder: Path) -> Mapping[str, float]:
-    return {quantity.name: evaluate(quantity, folder) for quantity in scene.quantities}
+def _values(outcomes: Sequence[Outcome]) -> tuple[dict[str, tuple[float, ...]], str]:
+    """Quantities that every sample has, and why others are missing, a sentence each."""
+    values, why = {}, []
+    for quantity in outcomes[0].task.scene.quantities:
+        try:
+            values[quantity.name] = tuple(evaluate(quantity, outcome.task.folder) for outcome in outcomes)
+        except QuantityError as error:
+            why.append(str(error))
+    return values, "; ".join(why)
 
 
 def _same_rows(one: Path, other: Path) -> bool:

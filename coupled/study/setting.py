@@ -59,11 +59,11 @@ class Ran:
     ----------
     setting : Setting
     status : str
-        "done" if every sample has come to its end.
+        "done" if every sample has come to its end and has one quantity at least.
     message : str
-        The sentence of a setting that was refused, failed or stopped.
+        The sentence of a setting that was refused, failed or stopped, or why it lacks some quantities.
     values : dict
-        Quantity to its value in each sample, in the order of the seeds.
+        Quantity to its value in each sample, in the order of the seeds; those that every sample has.
     wall_seconds, cpu_seconds, steps_per_second : float
         Mean over the samples of the run's own work [s, s, 1/s].
     same_bits : bool, optional
@@ -83,3 +83,8 @@ class Ran:
     def done(self) -> bool:
         """Whether there are values."""
         return self.status == "done"
+
+    @property
+    def lacking(self) -> str:
+        """What is missing of it and why, in words; empty if nothing is."""
+        return self.message if self.done else f"{self.status}: {self.message}"

@@ -81,8 +81,8 @@ def rows(judged: Mapping[str, Sequence[Judged]], units: Mapping[str, str]) -> li
 
 
 def without_result(rans: Sequence[Ran]) -> list[str]:
-    """A line for each setting that was refused, failed, stopped or left out."""
-    return [f"{ran.setting.name}: {ran.status}: {ran.message}" for ran in rans if not ran.done]
+    """A line for each setting that was refused, failed, stopped or left out, or lacks some quantities."""
+    return [f"{ran.setting.name}: {ran.lacking}" for ran in rans if ran.lacking]
 
 
 def _value(item: Judged) -> str:

@@ -12,7 +12,7 @@ from coupled.study.front import beaten_by, front_of, price
 from coupled.study.knob import Knob
 from coupled.study.reference import EXACT, Reference
 from coupled.study.setting import Ran
-from coupled.study.table import percent
+from coupled.study.table import percent, without_result
 from coupled.study.turns import Value
 
 LOADED = 0.1  # of the wall time that the processor did not work: told
@@ -174,7 +174,7 @@ def _speed_only(told: Told) -> list[str]:
 
 
 def _not_done(told: Told) -> list[str]:
-    lines = [f"- {ran.setting.name}: {ran.status}: {ran.message}" for ran in told.rans if not ran.done]
+    lines = [f"- {line}" for line in without_result(told.rans)]
     return ["", "## Without a result", "", *lines] if lines else []
 
 

@@ -14,7 +14,7 @@ from coupled.errors import LeitoError
 from coupled.scene.quantities import ColumnOverTime
 from coupled.study.errors import judge, observed_order
 from coupled.study.front import beaten_by, front_of, pareto, price
-from coupled.study.judge import references
+from coupled.study.judge import judge_all, references
 from coupled.study.reference import Reference, own_error, scale_of
 from coupled.study.setting import Ran, Setting
 
@@ -173,9 +173,26 @@ def test_errors_are_over_the_scale_that_a_quantity_names():
     assert judge(ran("a", 1.0, [3.0]), QUANTITY, found, chance=False).error == pytest.approx(0.25)
 
 
+def test_a_quantity_that_a_setting_lacks_is_compared_among_those_that_have_it():
+    runs = levels([1.16], [1.04], [1.01])
+    lacking = Ran(
+        setting=Setting(name="b", role="knob"), status="done", message="late is not known", values={"on": (1.0,)}
+    )
+    found = references([*runs, lacking], [quantity()], chance=False)
+    assert found[QUANTITY].mean == 1.01
+    assert len(judge_all([*runs, lacking], found, chance=False)[QUANTITY]) == 3
+    other = quantity(exact=1.0).model_copy(update={"name": "on"})
+    rare = quantity().model_copy(update={"name": "on"})
+    assert set(references([*runs, lacking], [quantity(), other], chance=False)) == {QUANTITY, "on"}
+    assert set(references([*runs, lacking], [quantity(), rare], chance=False)) == {QUANTITY}  # no reference has it
+    assert lacking.lacking == "late is not known"
+    with pytest.raises(LeitoError, match="no setting of this study has any of its quantities: late is not known"):
+        references([lacking], [quantity(exact=1.0)], chance=False)
+
+
 def test_without_a_finest_level_there_is_nothing_to_measure_against():
     runs = levels([1.0], [1.0], [1.0])[:1]
     refused = Ran(setting=Setting(name="finest", role="reference"), status="refused", message="r = 3 is above 2")
-    with pytest.raises(LeitoError, match="did not come to its end: r = 3 is above 2; give another one"):
+    with pytest.raises(LeitoError, match="has no drop: refused: r = 3 is above 2; give another"):
         references([*runs, refused], [quantity()], chance=False)
     assert references([*runs, refused], [quantity(exact=1.0)], chance=False)[QUANTITY].error == 0.0
