@@ -21,10 +21,11 @@ from coupled.measuring.pictures import convection
 from coupled.measuring.rises import Periods
 from coupled.measuring.samples import Group, intervals
 from coupled.measuring.states import rolls_of
+from particles import ParticleError
 
 TONES = {"0.9": "#5d6d7e", "1.1": "#e09f3e", "1.3": "#c1440e"}
 KINDS = {"walls_light": "#2a9d8f", "walls": "#1f5a94", "walls_heavy": "#7b4b94"}
-ROLLS = ("walls", "smooth_walls", "periodic_30000")  # with the largest Gamma
+ROLLS = ("walls", "smooth_walls", "periodic_25000")  # with the largest Gamma
 BAND = 3  # samples for an interval to be drawn
 
 
@@ -78,7 +79,7 @@ def _densities(found: Found, titles: dict[str, str], folder: Path) -> str:
             if gamma in found[name]:
                 _curve(axes, found[name][gamma], tone, titles[name].removeprefix("rough walls, ").replace(
                     "rough walls", "equal density"))  # fmt: skip
-                _surface(axes, found[name][gamma])
+        _surface(axes, [ascent for name in there for ascent in found[name].get(gamma, [])])
         axes.set_title(f"rough walls, Gamma = {gamma}", fontsize=10)
         axes.legend(fontsize=7, frameon=False)
     panels[0].set_ylabel("height of the intruder's centre")
@@ -113,7 +114,10 @@ def draw_rolls(found: Found, folder: Path) -> tuple[list[str], dict[str, str]]:
     gamma = GAMMAS[-1]
     for name in [case.name for case in CASES if gamma in found.get(case.name, {})]:
         group = Group(f"{titles[name]}, Gamma {gamma}", tuple(ascent.record for ascent in found[name][gamma]))
-        rolls = rolls_of(group, Periods())
+        try:
+            rolls = rolls_of(group, Periods())
+        except ParticleError:  # the frames of the longer period lie at several phases
+            continue
         half = f" +- {rolls.roll.half_width:.2f}" if rolls.roll.count > 1 else ""
         told[name] = f"{rolls.roll.mean:.2f}{half} ({rolls.roll.count})"
         if name in ROLLS:

@@ -14,6 +14,7 @@ from coupled.campaign.statistics import confidence
 STILL = 2.5  # the intruder's radius: a change of height below it is none
 DEEP = 10.0  # about as far below the surface as the middle of the rolls, round which it is to go
 WHOLE = 200.0  # periods
+SLOWEST = 5.0 * WHOLE  # of a fall that is told
 UP, NONE, DOWN, NOT_UP, MORE = (
     (STILL, math.inf),
     (-STILL, STILL),
@@ -126,10 +127,13 @@ def risen_by_ten(ascent: Ascent) -> float | None:
 
 
 def fall_time(ascent: Ascent) -> float | None:
-    """Periods in which the height over the place at the bottom falls to 1/e, by a line through its logarithm."""
+    """Periods in which the height over the place at the bottom falls to 1/e, by a line through its logarithm.
+
+    None if it hardly falls.
+    """
     above = ascent.height - STILL
     falling = np.logical_and.accumulate(above > 1.0)
     if falling.sum() < 5:
         return None
     slope = np.polynomial.polynomial.polyfit(ascent.periods[falling], np.log(above[falling]), 1)[1]
-    return float(-1.0 / slope) if slope < 0.0 else None
+    return float(-1.0 / slope) if slope < -1.0 / SLOWEST else None

@@ -156,7 +156,8 @@ def sinking(found: Found) -> str:
             else "does not fall"
         )
         told.append(
-            f"at Gamma = {gamma} the height over that at the bottom {fall}, and is {interval(heights)} at the end"
+            f"at Gamma = {gamma} the height over that at the bottom {fall}, and the height is "
+            f"{interval(heights).lstrip('+')} at the end"
         )
     return f"Without friction: {'; '.join(told)}." if told else ""
 
