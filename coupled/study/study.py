@@ -187,10 +187,10 @@ def _take(out: Path, resume: bool, overwrite: bool) -> None:
     """Make the folder, or clear what is to be overwritten."""
     require_place(out)
     ours = (RUNS, TRIAL, TEXT, table.CSV)
-    holds = any((out / name).exists() for name in ours)
+    holds = any((out / name).exists() for name in ours if name != TRIAL)  # a budget that was too small leaves a trial
     if holds and not (resume or overwrite):
         raise LeitoError(f"{out} holds a study already; go on with --resume, or start anew with --overwrite or --out")
-    if holds and overwrite:
+    if overwrite:
         for name in ours:
             place = out / name
             shutil.rmtree(place) if place.is_dir() else place.unlink(missing_ok=True)

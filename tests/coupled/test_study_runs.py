@@ -204,6 +204,12 @@ def test_a_study_that_goes_on_with_another_scene_is_timed_anew(tmp_path, monkeyp
     assert tried == [0.0216, 0.216]
 
 
+def test_after_a_budget_that_was_too_small_nothing_is_in_the_way(tmp_path):
+    for _ in range(2):  # the second time it is refused for the same reason
+        with pytest.raises(LeitoError, match="--budget 1e-06: the scene as it is and its reference alone take"):
+            study(tmp_path, BEAM, knobs=(), budget=1e-6)
+
+
 def test_a_file_in_place_of_the_folder_is_refused(tmp_path):
     (tmp_path / "study").write_text("")
     with pytest.raises(LeitoError, match="study is a file; give another folder"):
