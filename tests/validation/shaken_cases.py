@@ -18,7 +18,9 @@ from coupled.measuring.rises import height_over_floor
 RUNS = Path(__file__).parents[2] / "runs" / "validation" / "shaken"
 GAMMAS = ("0.9", "1.1", "1.3")
 LIGHT, HEAVY = "intruders.0.density=0.1061033", "intruders.0.density=0.9549297"  # a third and three times 1/pi
-LONGER = ("shaking.period=4.743416", "time.duration=978.68", "quantities.1.start=741.51")  # 200 periods, too
+LONGER = (  # 200 periods and a frame in ten of them, too
+    "shaking.period=4.743416", "time.duration=978.68", "quantities.1.start=741.51", "output.frames_per_second=0.02108185",
+)  # fmt: skip
 MOST = 50  # seeds looked for
 WINDOW = 10  # periods over which a height is averaged
 
