@@ -12,6 +12,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator
 from coupled.report.drawing import Line2D, plt
 from coupled.scene.accuracy import PRESETS
 from coupled.study.errors import Judged
+from coupled.study.setting import Ran
 from coupled.study.study import Study
 from coupled.study.table import percent
 
@@ -78,19 +79,19 @@ def _table(study: Study) -> str:
     head = ["setting", "time [s]", "times as fast", *(f"{name} [{study.units[name]}]" for name in quantities)]
     lines = [f"| {' | '.join(head)} |", "|" + "---|" * len(head)]
     base = _base(study)
-    for name in _shown(study):
-        items = [next(item for item in study.judged[quantity] if item.setting.name == name) for quantity in quantities]
-        seconds = items[0].ran.cpu_seconds
-        cells = [items[0].setting.accuracy or name, f"{seconds:.3g}", f"{base / seconds:.2g}", *map(_cell, items)]
+    for ran in _shown(study):
+        by_quantity = [{item.setting.name: item for item in study.judged[quantity]} for quantity in quantities]
+        errors = [_cell(items[ran.setting.name]) if ran.setting.name in items else "" for items in by_quantity]
+        seconds = ran.cpu_seconds
+        cells = [ran.setting.accuracy or ran.setting.name, f"{seconds:.3g}", f"{base / seconds:.2g}", *errors]
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
-def _shown(study: Study) -> list[str]:
-    """Names of the settings of the table: as it is, presets, finest."""
-    items = next(iter(study.judged.values()))
+def _shown(study: Study) -> list[Ran]:
+    """The settings of the table: as it is, presets, finest."""
     roles = ("base", "preset", "reference")
-    return [item.setting.name for role in roles for item in items if item.setting.role == role]
+    return [ran for role in roles for ran in study.rans if ran.done and ran.setting.role == role]
 
 
 def _base(study: Study) -> float:
