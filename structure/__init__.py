@@ -2,7 +2,7 @@
 
 from structure.boundary import agreed_force, withhold_force
 from structure.elastic import ElasticStructure
-from structure.errors import StructureError
+from structure.errors import StepError, StructureError
 from structure.loads.load import BodyForce, BoundaryLoad, PointLoad, Pressure
 from structure.loads.schedules import Constant, Ramp, Sine, Table
 from structure.material import PlaneStrain, Rayleigh
@@ -33,6 +33,7 @@ __all__ = [
     "Sine",
     "Structure",
     "StructureEnergies",
+    "StepError",
     "StructureError",
     "StructureFields",
     "StructurePeaks",

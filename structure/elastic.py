@@ -182,7 +182,7 @@ class ElasticStructure(Rewinding):
             stepper.step()
         except StepError as failed:
             require_finite(float(self._force.sum()), self._force, self.time, self.time_step)
-            raise StepError(f"t = {self.time:g} s: {failed}") from None
+            raise StepError(f"t = {self.time:g} s: {failed}", failed.largest_step) from None
         if not self._ledger:
             self._read_boundary()
             require_finite(float(self.boundary_displacement[0, 0]), self._force, self.time, self.time_step)

@@ -6,4 +6,14 @@ class StructureError(ValueError):
 
 
 class StepError(StructureError):
-    """A step in time that finds no balance of forces."""
+    """A step in time that finds no balance of forces, or that turns the body too far.
+
+    Attributes
+    ----------
+    largest_step : float
+        Largest step that would not, over the one taken, where that is known to be smaller.
+    """
+
+    def __init__(self, what: str, largest_step: float = 1.0) -> None:
+        super().__init__(what)
+        self.largest_step = largest_step

@@ -15,7 +15,7 @@ from coupled.running.ranks import on_root, together
 from coupled.running.sign import Remedy, Sign
 from coupled.running.watchdog import Glance
 from particles import ParticleError
-from structure import StructureError
+from structure import StepError, StructureError
 
 LOOK = 1000  # grain steps between two looks: together with the copy of the state 0.5 % of the steps' time
 ROUGH = 32  # strides in which the way from the last good look is first gone again
@@ -136,7 +136,7 @@ class Guard:
         try:
             together(self._comm, lambda: self._model.advance(steps))
         except FAULTS as fault:
-            return Sign(str(fault), _remedy(fault))
+            return Sign(str(fault), _remedy(fault), fault.largest_step if isinstance(fault, StepError) else 1.0)
         return None
 
     def _sign_again(self, rattles: bool) -> Sign | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-import math
 from abc import ABC, abstractmethod
 from typing import Any
 
@@ -17,7 +16,7 @@ from structure.material import Rayleigh
 from structure.solvers.solver import Solve, factorise
 from structure.theories.frame import MeanFrame, Pose, unwrapped
 
-LARGEST_TURN = math.pi / 2  # of the body within a step
+LARGEST_TURN = 0.35  # [rad] of the body within a step: the turn then lags behind by its square/12, 1 %
 
 
 class ConservingStepper(ABC):
@@ -27,9 +26,11 @@ class ConservingStepper(ABC):
     ends of the step such that ``f_int . d`` is the change of strain energy plus the loss of the step,
     and f_int has neither resultant nor moment about the mean positions. Hence energy, momentum and
     angular momentum are kept to the accuracy of the solution, for a step of any length (Simo and
-    Tarnow 1992). For small motion this is Newmark's (1/4, 1/2). The acceleration, which only
-    `predict` uses, is that of equilibrium at the end of the step, as it is there: the recurrence
-    ``a1 = 2 (v1 - v0)/dt - a0``, the same for small motion, keeps every error with alternating sign.
+    Tarnow 1992). A rigid spin omega turns by ``2 atan(omega dt/2)`` a step, less than it should by
+    ``(omega dt)^2/12`` of it: beyond `LARGEST_TURN` the step is refused. For small motion this is
+    Newmark's (1/4, 1/2). The acceleration, which only `predict` uses, is that of equilibrium at the end
+    of the step, as it is there: the recurrence ``a1 = 2 (v1 - v0)/dt - a0``, the same for small motion,
+    keeps every error with alternating sign.
 
     The unknown is ``e = d - dt v0``, so that ``v1 = v0 + 2 e/dt``. The arrays are those of `Stepper`;
     `turn` is the rotation [rad] of the best-fitting rigid motion, whole turns counted.
@@ -99,8 +100,14 @@ class ConservingStepper(ABC):
         self._balance_acceleration()
         before = self.turn
         self.resume(before)
-        if abs(self.turn - before) > LARGEST_TURN:
-            raise self._refuse(f"the body turns by {self.turn - before:.3g} rad within it; take a smaller step")
+        turned = abs(self.turn - before)
+        if turned > LARGEST_TURN:
+            share = LARGEST_TURN / turned
+            raise StepError(
+                f"the body turns by {turned:.3g} rad within a step of {dt:g} s, above {LARGEST_TURN:g}, where its turn "
+                f"lags behind by {100 * turned**2 / 12:.2g} %: take a step of at most {share * dt:.2g} s",
+                share,
+            )
 
     def loss_of_step(self) -> float:
         """See `Stepper`."""

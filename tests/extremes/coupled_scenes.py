@@ -77,6 +77,15 @@ def on_bed(
     } | tables
 
 
+def bed_stiffness() -> float:
+    """Vertical stiffness [N/m per length] of the discs under the bar, fixed sideways.
+
+    Four layers of contacts in series: bar and floor with one contact a disc, between the rows two at 30 degrees, which
+    have ``2 k cos^2 30 = 1.5 k`` together.
+    """
+    return LENGTH / (2 * RADIUS) * STIFFNESS / (1.0 + 2.0 / 1.5 + 1.0)
+
+
 def carried(run: Finished, weight: float = WEIGHT) -> list[Measured]:
     """The bed carries the weight, in the mean of the last half: what still swings is a few per cent of it."""
     reaction = run.history["reaction_y"]
