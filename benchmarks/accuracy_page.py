@@ -11,10 +11,10 @@ from matplotlib.ticker import FuncFormatter, LogLocator
 
 from coupled.report.drawing import Line2D, plt
 from coupled.scene.accuracy import PRESETS
-from coupled.study.errors import Judged
-from coupled.study.setting import Ran
+from coupled.study.judging.errors import Judged
+from coupled.study.pages.table import percent
+from coupled.study.settings.setting import Ran
 from coupled.study.study import Study
-from coupled.study.table import percent
 
 Done = tuple[str, str, Study]  # scene, what is shortened, its study
 PLAIN = FuncFormatter(lambda value, _: f"{value:g}")

@@ -12,9 +12,9 @@ from coupled.campaign import Outcome, Task, run_all
 from coupled.errors import Interrupted, LeitoError, is_sentence
 from coupled.scene import Scene, dump_scene
 from coupled.step import with_step
-from coupled.study.measure import came_to
-from coupled.study.seeds import seed_key
-from coupled.study.setting import Load, Ran, Setting
+from coupled.study.judging.measure import came_to
+from coupled.study.settings.seeds import seed_key
+from coupled.study.settings.setting import Load, Ran, Setting
 
 RUNS = "runs"
 

@@ -17,21 +17,21 @@ from coupled.report.quantities import unit_shown
 from coupled.running.launch import ranks
 from coupled.scene import Scene, dump_scene, load_scene
 from coupled.scene.quantities import Quantity
-from coupled.study import table
-from coupled.study.combine import combinations
-from coupled.study.cost import Trial, try_out
-from coupled.study.errors import Judged
-from coupled.study.judge import judge_all, references
-from coupled.study.knob import Knob
-from coupled.study.knobs import knobs_of, values_of
-from coupled.study.picture import draw_front
-from coupled.study.plan import LEVELS, Plan, Terms, make_plan, one_turn
-from coupled.study.reference import Reference
+from coupled.study.judging.errors import Judged
+from coupled.study.judging.judge import judge_all, references
+from coupled.study.judging.reference import Reference
+from coupled.study.pages import table
+from coupled.study.pages.picture import draw_front
+from coupled.study.pages.words import Told, text_of
 from coupled.study.runs import RUNS, Runner
-from coupled.study.seeds import seeds_of
-from coupled.study.setting import Load, Ran, Setting
-from coupled.study.turns import Changes, Value
-from coupled.study.words import Told, text_of
+from coupled.study.settings.combine import combinations
+from coupled.study.settings.cost import Trial, try_out
+from coupled.study.settings.knob import Knob
+from coupled.study.settings.knobs import knobs_of, values_of
+from coupled.study.settings.plan import LEVELS, Plan, Terms, make_plan, one_turn
+from coupled.study.settings.seeds import seeds_of
+from coupled.study.settings.setting import Load, Ran, Setting
+from coupled.study.settings.turns import Changes, Value
 
 TRIAL, TEXT = "trial.json", "study.md"
 QUIET = ("output.figures=false", "output.frames_per_second=0.0")  # no setting pays for pictures

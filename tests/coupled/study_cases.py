@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coupled.study.reference import EXACT, Reference
-from coupled.study.setting import Ran, Role, Setting
+from coupled.study.judging.reference import EXACT, Reference
+from coupled.study.settings.setting import Ran, Role, Setting
 
 QUANTITY = "drop"
 

@@ -12,11 +12,11 @@ from study_cases import QUANTITY, exactly, ran
 
 from coupled.errors import LeitoError
 from coupled.scene.quantities import ColumnOverTime
-from coupled.study.errors import judge, observed_order
-from coupled.study.front import beaten_by, front_of, pareto, price
-from coupled.study.judge import judge_all, references
-from coupled.study.reference import Reference, own_error, scale_of
-from coupled.study.setting import Ran, Setting
+from coupled.study.judging.errors import judge, observed_order
+from coupled.study.judging.front import beaten_by, front_of, pareto, price
+from coupled.study.judging.judge import judge_all, references
+from coupled.study.judging.reference import Reference, own_error, scale_of
+from coupled.study.settings.setting import Ran, Setting
 
 NUMBER = st.integers(min_value=0, max_value=8).map(float)  # few values, so that many points are equal
 

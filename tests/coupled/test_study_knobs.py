@@ -9,10 +9,10 @@ from coupled.limits_before import coupling_limit_of
 from coupled.scene import load_scene
 from coupled.scene.find import shipping_scenes
 from coupled.step import with_step
-from coupled.study.coupling import borne
-from coupled.study.knobs import BY_NAME, knobs_of, values_of
-from coupled.study.plan import Terms, Trial, make_plan, one_turn
-from coupled.study.seeds import seed_key, seeds_of
+from coupled.study.settings.coupling import borne
+from coupled.study.settings.knobs import BY_NAME, knobs_of, values_of
+from coupled.study.settings.plan import Terms, Trial, make_plan, one_turn
+from coupled.study.settings.seeds import seed_key, seeds_of
 
 STRUCTURES = ("mesh", "order", "element", "body", "exchange", "substeps", "interface", "glued")
 TERMS = Terms(trial=Trial(10.0, 0.7, 0.2), samples=1, workers=1)

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from study_cases import QUANTITY, exactly, ran
 
-from coupled.study.errors import judge
-from coupled.study.knobs import BY_NAME
-from coupled.study.labels import Label, write_labels
-from coupled.study.picture import draw_front
-from coupled.study.setting import Ran, Setting
-from coupled.study.table import percent, rows, without_result, write_csv
-from coupled.study.words import Told, text_of
+from coupled.study.judging.errors import judge
+from coupled.study.pages.labels import Label, write_labels
+from coupled.study.pages.picture import draw_front
+from coupled.study.pages.table import percent, rows, without_result, write_csv
+from coupled.study.pages.words import Told, text_of
+from coupled.study.settings.knobs import BY_NAME
+from coupled.study.settings.setting import Ran, Setting
 
 RIGHT = exactly(1.0)
 UNITS = {QUANTITY: "mm"}

@@ -17,9 +17,9 @@ import tomli_w
 from coupled.errors import LeitoError
 from coupled.scene import Scene
 from coupled.study import study as study_module
-from coupled.study.ask import knob_values, reference_keys
-from coupled.study.cost import Trial
-from coupled.study.errors import observed_order
+from coupled.study.judging.errors import observed_order
+from coupled.study.settings.ask import knob_values, reference_keys
+from coupled.study.settings.cost import Trial
 from coupled.study.study import Wishes, run_study
 
 BEAM = {

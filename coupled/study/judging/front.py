@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from coupled.study.errors import Judged
+from coupled.study.judging.errors import Judged
 
 MARGIN = 0.05  # of the time: what differs by less is as fast
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from coupled.campaign.statistics import Interval, confidence
-from coupled.study.reference import Reference
-from coupled.study.setting import Ran, Setting
+from coupled.study.judging.reference import Reference
+from coupled.study.settings.setting import Ran, Setting
 
 Verdict = Literal["resolved", "not resolved", "below the reference's own error", "one sample", "reference"]
 

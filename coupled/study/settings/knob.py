@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from coupled.scene import Scene
-from coupled.study.turns import Changes, Value
+from coupled.study.settings.turns import Changes, Value
 
 
 def _always(scene: Scene) -> bool:

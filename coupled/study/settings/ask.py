@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from coupled.errors import LeitoError
 from coupled.scene.overrides import parse_override
 from coupled.scene.refusal import nearest
-from coupled.study.knobs import BY_NAME
-from coupled.study.turns import Value
+from coupled.study.settings.knobs import BY_NAME
+from coupled.study.settings.turns import Value
 
 
 def knob_names(text: str) -> tuple[str, ...]:

@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from coupled.study.errors import Judged, observed_order
-from coupled.study.front import beaten_by, front_of, price
-from coupled.study.knob import Knob
-from coupled.study.reference import EXACT, Reference
-from coupled.study.setting import Ran
-from coupled.study.table import percent, without_result
-from coupled.study.turns import Value
+from coupled.study.judging.errors import Judged, observed_order
+from coupled.study.judging.front import beaten_by, front_of, price
+from coupled.study.judging.reference import EXACT, Reference
+from coupled.study.pages.table import percent, without_result
+from coupled.study.settings.knob import Knob
+from coupled.study.settings.setting import Ran
+from coupled.study.settings.turns import Value
 
 LOADED = 0.1  # of the wall time that the processor did not work: told
 OPEN = ("not resolved", "one sample")

@@ -8,10 +8,10 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from coupled.study.errors import Judged
-from coupled.study.front import front_of
-from coupled.study.reference import Reference
-from coupled.study.setting import Ran
+from coupled.study.judging.errors import Judged
+from coupled.study.judging.front import front_of
+from coupled.study.judging.reference import Reference
+from coupled.study.settings.setting import Ran
 
 CSV = "study.csv"
 COLUMNS = (

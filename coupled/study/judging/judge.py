@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from coupled.errors import LeitoError
 from coupled.scene.quantities import Quantity
-from coupled.study.errors import Judged, judge
-from coupled.study.reference import EXACT, Reference, own_error, scale_of
-from coupled.study.setting import Ran
+from coupled.study.judging.errors import Judged, judge
+from coupled.study.judging.reference import EXACT, Reference, own_error, scale_of
+from coupled.study.settings.setting import Ran
 
 
 def references(rans: Sequence[Ran], quantities: Sequence[Quantity], *, chance: bool) -> dict[str, Reference]:

@@ -9,12 +9,12 @@ from coupled.errors import LeitoError
 from coupled.scene import Scene
 from coupled.scene.accuracy import NAMES
 from coupled.step import with_step
-from coupled.study.cost import Trial, work
-from coupled.study.coupling import borne
-from coupled.study.knob import Knob
-from coupled.study.knobs import refined_together, values_of
-from coupled.study.setting import Load, Setting
-from coupled.study.turns import Changes, Value
+from coupled.study.settings.cost import Trial, work
+from coupled.study.settings.coupling import borne
+from coupled.study.settings.knob import Knob
+from coupled.study.settings.knobs import refined_together, values_of
+from coupled.study.settings.setting import Load, Setting
+from coupled.study.settings.turns import Changes, Value
 
 LEVELS = 2  # of refinement of the reference, each twice as fine, unless the budget or the user wants less
 REFERENCE_SHARE = 0.5  # of a budget, for the reference and the level before it

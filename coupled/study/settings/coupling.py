@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from coupled.limits_before import coupling_limit_of
 from coupled.step import with_step
-from coupled.study import turns
-from coupled.study.setting import Load
-from coupled.study.turns import Changes
+from coupled.study.settings import turns
+from coupled.study.settings.setting import Load
+from coupled.study.settings.turns import Changes
 
 INSIDE = 0.95  # of the coupling's limit
 

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from coupled.report.drawing import Axes, plt
-from coupled.study.errors import Judged
-from coupled.study.front import front_of
-from coupled.study.labels import Label, write_labels
-from coupled.study.setting import Role
+from coupled.study.judging.errors import Judged
+from coupled.study.judging.front import front_of
+from coupled.study.pages.labels import Label, write_labels
+from coupled.study.settings.setting import Role
 
 MARKERS = "osD^vP<>Xhp*d8"
 ROLE_STYLE: dict[Role, tuple[str, str, float]] = {

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Mapping
 from coupled.errors import LeitoError
 from coupled.scene import RowUnder, Scene
 from coupled.scene.refusal import nearest
-from coupled.study import turns
-from coupled.study.knob import Knob
-from coupled.study.turns import Changes, Value, set_key
+from coupled.study.settings import turns
+from coupled.study.settings.knob import Knob
+from coupled.study.settings.turns import Changes, Value, set_key
 
 CELLS = {1: (2.0,), 2: (4.0, 3.0)}  # factors by level: a row of springs may divide by 3 alone
 OPEN_STEP = 0.0  # the fraction of a step that is given as a number: none of those that are tried

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from coupled.errors import LeitoError
-from coupled.study.cost import Trial, work
-from coupled.study.coupling import borne
-from coupled.study.errors import Judged
-from coupled.study.knob import Knob
-from coupled.study.plan import name_of
-from coupled.study.setting import Load, Setting
-from coupled.study.turns import Changes, Value
+from coupled.study.judging.errors import Judged
+from coupled.study.settings.cost import Trial, work
+from coupled.study.settings.coupling import borne
+from coupled.study.settings.knob import Knob
+from coupled.study.settings.plan import name_of
+from coupled.study.settings.setting import Load, Setting
+from coupled.study.settings.turns import Changes, Value
 
 WORSE = 1.1  # of the base's known error: what still counts as no loss
 MOST = 3

@@ -11,7 +11,7 @@ from coupled.errors import QuantityError
 from coupled.output import history
 from coupled.output.folder import SCENE, SUMMARY
 from coupled.quantities import evaluate
-from coupled.study.setting import Ran, Setting
+from coupled.study.settings.setting import Ran, Setting
 
 
 def came_to(setting: Setting, outcomes: Sequence[Outcome], base: Sequence[Path] | None) -> Ran:

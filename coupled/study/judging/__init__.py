@@ -1,0 +1,1 @@
+"""What settings are worth: references, errors against them, and the front."""
