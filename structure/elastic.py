@@ -92,6 +92,9 @@ class ElasticStructure(Rewinding):
         self._loads, self._beta = LoadVectors(self._body, loads), scheme.beta
         if self._loads.followers:
             require_followers_fit(self._body, self._loads.followers, theory, self._beta * self.time_step**2)
+        lines = self.polyline.points - self.polyline.points[0]
+        farthest = int(np.argmax(np.hypot(*lines.T)))
+        self._line = (farthest, lines[farthest])
         self._mass_solve: Callable[[PETSc.Vec, PETSc.Vec], None] | None = None
         self._ledger = ledger
         self.set_initial()
@@ -326,7 +329,14 @@ class ElasticStructure(Rewinding):
         """See `Rewinding`."""
         super().rewind(snapshot)
         self._stepper.rewind(snapshot["stepper"])
-        self._stepper.carried = self.boundary_displacement[0]
+        self._carry()
+
+    def _carry(self) -> None:
+        """Tell the stepper how the body has moved as a whole: the turn is that of the line to the farthest node."""
+        node, (x, y) = self._line
+        u = self.boundary_displacement
+        ahead_x, ahead_y = u[node] - u[0]
+        self._stepper.carry(u[0], (x * ahead_y - y * ahead_x) / (x * x + y * y))
 
     def _predictor(self) -> NDArray[np.float64]:
         """Newmark's ``u + dt v + (1/2 - beta) dt^2 a`` [m], the shape that a pressure follows.
@@ -349,7 +359,7 @@ class ElasticStructure(Rewinding):
             arrays += (increment,)
         values, sums = self._exchange.read(arrays, shares)
         self.boundary_displacement, self.boundary_velocity, self.boundary_acceleration = values[:3]
-        stepper.carried = self.boundary_displacement[0]
+        self._carry()
         return sums, values[3] if increment is not None else None
 
     def _nodal(self, name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:

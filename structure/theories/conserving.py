@@ -43,7 +43,7 @@ class ConservingStepper(ABC):
         unknowns = body.unknowns
         self.displacement, self.velocity, self.acceleration = (np.zeros(unknowns) for _ in range(3))
         self.force, self.increment = np.zeros(unknowns), np.zeros(unknowns)
-        self.carried = np.zeros(2)
+        self._carried = np.zeros(2)
         self._force_before, self._load = np.zeros(unknowns), np.zeros(unknowns)
         self.turn, self._frame = 0.0, MeanFrame(body)
         self._divide_by_mass = factorise(body.mass_matrix, body.mass_matrix)
@@ -74,6 +74,10 @@ class ConservingStepper(ABC):
 
     def require_resolved(self) -> None:  # noqa: B027  nothing to refuse
         """See `Stepper`: residuals weigh mass and stiffness apart, so that no step is refused."""
+
+    def carry(self, translation: NDArray[np.float64], turn: float) -> None:
+        """See `Stepper`; strains of a turned body are no product with K."""
+        self._carried = translation
 
     def start(self) -> None:
         """See `Stepper`."""
@@ -177,8 +181,8 @@ class ConservingStepper(ABC):
         return array, PETSc.Vec().createWithArray(array, comm=self._mass.comm)
 
     def _relative(self, displacement: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Displacement [m] less the translation `carried`."""
-        return (displacement.reshape(-1, 2) - self.carried).ravel()
+        """Displacement [m] less the translation of `carry`."""
+        return (displacement.reshape(-1, 2) - self._carried).ravel()
 
     def _refuse(self, why: str) -> StepError:
         return StepError(f"no balance is found at the end of a step of {self._dt:g} s: {why}")

@@ -43,6 +43,7 @@ class LinearTheory:
             damping=_damping_matrix(body.mass_matrix, self.stiffness, damping),
             scheme=scheme,
             time_step=time_step,
+            arms=(body.mesh.points[body.nodes.owned] - body.mesh.outer_polyline.points[0]) @ np.array([1.0, 1j]),
         )
         self._probe: StressProbe | None = None
 

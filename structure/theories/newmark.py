@@ -23,9 +23,10 @@ class NewmarkStepper:
 
     The arrays `displacement` [m], `velocity` [m/s], `acceleration` [m/s^2], `force` [N/m] and
     `increment` [m] (of the last step) have shape (owned unknowns,) and are the memory of PETSc
-    vectors: write into them, never replace them. `carried` (2,) [m] is a translation near that of the body: K
-    times a translation is zero, so it is taken off before the product, whose round-off would otherwise grow
-    with the path. `looks_back` tells whether the force at the beginning of a step enters it.
+    vectors: write into them, never replace them. `carry` tells a translation and a small turn near those of the
+    body: K times a rigid motion is zero, so it is taken off before the product, whose round-off would otherwise
+    grow with the path, and hold a turn as a spring does.
+    `looks_back` tells whether the force at the beginning of a step enters it.
     """
 
     def __init__(
@@ -36,6 +37,7 @@ class NewmarkStepper:
         damping: PETSc.Mat | None,
         scheme: Scheme,
         time_step: float,
+        arms: NDArray[np.complex128],
     ) -> None:
         self._mass, self._stiffness, self._damping = mass, stiffness, damping
         self._dt, self._beta, self._gamma = time_step, scheme.beta, scheme.gamma
@@ -49,7 +51,8 @@ class NewmarkStepper:
         self.force, self._f = arrays["force"], vectors["force"]
         self.increment, self._d = arrays["increment"], vectors["increment"]
         self._product_array, self._product = arrays["product"], vectors["product"]
-        self.carried = np.zeros(2)
+        self._arms, self._swept = arms, np.zeros_like(arms)
+        self._carried, self._turned = 0j, 0.0
         relative = np.zeros_like(self.displacement)
         self._relative_array, self._relative_pairs = relative, relative.view(complex)  # x + iy: one pass over both
         self._relative = PETSc.Vec().createWithArray(relative, comm=mass.comm)
@@ -85,6 +88,16 @@ class NewmarkStepper:
             effective.axpy(late * self._v_new, self._damping, structure=same)
         effective.axpy(late * self._u_new, self._stiffness, structure=same)
         return effective
+
+    def carry(self, translation: NDArray[np.float64], turn: float) -> None:
+        """See `Stepper`: of the point from which `arms` are taken."""
+        self._carried, self._turned = complex(*translation), turn
+
+    def _take_off(self) -> None:
+        """Rigid motion out of `_relative`."""
+        np.multiply(self._arms, 1j * self._turned, out=self._swept)
+        self._swept += self._carried
+        self._relative_pairs -= self._swept
 
     def require_resolved(self) -> None:
         """See `Stepper`."""
@@ -231,14 +244,14 @@ class NewmarkStepper:
     def strain(self) -> float:
         """This rank's share of ``u . K u/2`` [J/m]."""
         self._u.copy(self._relative)
-        self._relative_pairs -= complex(*self.carried)
+        self._take_off()
         self._stiffness.mult(self._relative, self._product)
         return float(self._relative_array.dot(self._product_array)) / 2
 
     def _residual(self, force: PETSc.Vec) -> None:
-        """``rhs = f - K u - C v`` with u in `_relative`, of which `carried` is taken off."""
+        """``rhs = f - K u - C v`` with u in `_relative`, of which the rigid motion of `carry` is taken off."""
         rhs = self._rhs
-        self._relative_pairs -= complex(*self.carried)
+        self._take_off()
         self._stiffness.mult(self._relative, rhs)
         if self._three_terms:
             if not self._damped_known:

@@ -20,8 +20,7 @@ class Stepper(Protocol):
 
     The arrays `displacement` [m], `velocity` [m/s], `acceleration` [m/s^2], `force` [N/m] and
     `increment` [m] (of the last step) have shape (owned unknowns,): write into them, never replace
-    them. `carried` (2,) [m] is a translation near that of the body, free to be taken off before
-    products whose round-off would otherwise grow with the path.
+    them.
     """
 
     displacement: Floats
@@ -29,7 +28,6 @@ class Stepper(Protocol):
     acceleration: Floats
     force: Floats
     increment: Floats
-    carried: Floats
 
     def require_resolved(self) -> None:
         """Refuse a step whose round-off moves the body as a whole.
@@ -37,6 +35,12 @@ class Stepper(Protocol):
         Raises
         ------
         StructureError
+        """
+        ...
+
+    def carry(self, translation: Floats, turn: float) -> None:
+        """Tell the motion of the first boundary node, (2,) [m], and about how far the body has turned [rad] by the
+        linear theory: free to be taken off before products whose round-off would otherwise grow with the path.
         """
         ...
 

@@ -76,9 +76,9 @@ def test_units_do_not_matter(size: float, density: float) -> None:
     np.testing.assert_allclose(seen[1], seen[0], rtol=1e-7, atol=1e-10)
 
 
-@pytest.mark.parametrize(("stiffness", "refused"), [(1e17, False), (1e19, True)])
+@pytest.mark.parametrize(("stiffness", "refused"), [(1e17, False), (1e20, True)])
 def test_a_step_that_loses_the_rigid_motion_is_refused_when_asked(stiffness: float, refused: bool) -> None:
-    """What is not refused falls and turns as a rigid body does to 1e-3; what is, is off by 3 % and more."""
+    """What is not refused falls and turns as a rigid body does to 1e-3; what is, turns off by 1 % and more."""
     mesh = meshes.beam(length=0.2, height=0.02, along=10, across=2)
     loads = (BodyForce(acceleration=(0.0, -9.81)), PointLoad(point=(0.2, 0.0), force=(0.0, 10.0)))
     material = PlaneStrain(youngs_modulus=stiffness, poissons_ratio=0.3, density=2700.0)
@@ -87,8 +87,9 @@ def test_a_step_that_loses_the_rigid_motion_is_refused_when_asked(stiffness: flo
     for _ in range(500):
         for moving in (elastic, rigid):
             moving.advance(np.zeros_like(mesh.outer_polyline.points))
-    off = abs((elastic.centroid() - rigid.centroid())[1] / rigid.centroid()[1])
-    assert off > 0.01 if refused else off < 1e-3
+    fall = abs((elastic.centroid() - rigid.centroid())[1] / rigid.centroid()[1])
+    turn = abs(elastic.mean_rotation() / rigid.mean_rotation() - 1.0)
+    assert turn > 0.01 if refused else max(fall, turn) < 1e-3
     if refused:
         with pytest.raises(StructureError, match="above 1e\\+09, where round-off moves the body"):
             elastic.require_resolved()
@@ -108,3 +109,31 @@ def test_a_state_goes_back_into_a_kind_that_keeps_the_same(saved_by: str, kind: 
         return
     with pytest.raises(StructureError, match="it is that of another theory, scheme or kind of structure"):
         moving.restore(saved.state())
+
+
+def test_a_stiff_bar_falls_and_turns_as_a_rigid_one() -> None:
+    """A push at one end for 2000 steps, of a matrix that stands 1e9 over the mass.
+
+    K knows a turn to 16 digits only: a stiffness of 1e-16 K that is left over would hold it as a spring, with an error
+    that grows with the square of the steps, to 5e-2 of the turn and 4e-3 of the fall here.
+    """
+    steps, push, step, length = 2000, 7e-6, 5e-5, 0.2
+    material = PlaneStrain(youngs_modulus=7e10, poissons_ratio=0.3, density=1.8e-3)
+    light = ElasticStructure(
+        meshes.beam(length=length, height=0.02, along=10, across=2),
+        material=material,
+        time_step=step,
+        loads=[BodyForce(acceleration=(0.0, -9.81)), PointLoad(point=(length, 0.01), force=(0.0, push))],
+    )
+    light.require_resolved()
+    start, idle = light.centroid()[1], np.zeros_like(light.polyline.points)
+    for _ in range(steps):
+        light.advance(idle)
+    mass, time = light.mass, steps * step
+    inertia = mass * (length**2 + 0.02**2) / 12
+    fall = 0.5 * (9.81 - push / mass) * time**2
+    # The linear theory shows the arc tangent of an angle. Its solver's round-off, 2e-16 of 1e9 in every step, adds up.
+    turn = 0.5 * push * 0.5 * length / inertia * time**2
+    assert turn > 0.01
+    assert start - light.centroid()[1] == pytest.approx(fall, rel=1e-4)
+    assert np.tan(light.mean_rotation()) == pytest.approx(turn, rel=1e-3)
