@@ -44,9 +44,9 @@ def study(
     refuse_both(resume, overwrite)
     if budget is not None and not budget > 0.0:
         raise LeitoError(f"--budget {budget:g}: must be greater than 0; give the seconds that all runs may take")
+    from coupled.study.pages.table import HEADER
     from coupled.study.settings.ask import knob_names, knob_values, reference_keys
     from coupled.study.study import Wishes, run_study
-    from coupled.study.pages.table import HEADER
 
     wishes = Wishes(
         overrides=tuple(overrides or ()),
