@@ -94,7 +94,7 @@ class ElasticStructure(Rewinding):
             require_followers_fit(self._body, self._loads.followers, theory, self._beta * self.time_step**2)
         lines = self.polyline.points - self.polyline.points[0]
         farthest = int(np.argmax(np.hypot(*lines.T)))
-        self._line = (farthest, lines[farthest])
+        self._line = (farthest, *(lines[farthest] / (lines[farthest] @ lines[farthest])).tolist())
         self._mass_solve: Callable[[PETSc.Vec, PETSc.Vec], None] | None = None
         self._ledger = ledger
         self.set_initial()
@@ -333,10 +333,10 @@ class ElasticStructure(Rewinding):
 
     def _carry(self) -> None:
         """Tell the stepper how the body has moved as a whole: the turn is that of the line to the farthest node."""
-        node, (x, y) = self._line
+        node, x, y = self._line
         u = self.boundary_displacement
-        ahead_x, ahead_y = u[node] - u[0]
-        self._stepper.carry(u[0], (x * ahead_y - y * ahead_x) / (x * x + y * y))
+        part = u.item  # numbers one by one: of so few an array is dearer
+        self._stepper.carry(u[0], x * (part(node, 1) - part(0, 1)) - y * (part(node, 0) - part(0, 0)))
 
     def _predictor(self) -> NDArray[np.float64]:
         """Newmark's ``u + dt v + (1/2 - beta) dt^2 a`` [m], the shape that a pressure follows.

@@ -91,7 +91,7 @@ class NewmarkStepper:
 
     def carry(self, translation: NDArray[np.float64], turn: float) -> None:
         """See `Stepper`: of the point from which `arms` are taken."""
-        self._carried, self._turned = complex(*translation), turn
+        self._carried, self._turned = complex(translation.item(0), translation.item(1)), turn
 
     def _take_off(self) -> None:
         """Rigid motion out of `_relative`."""
