@@ -8,7 +8,6 @@ them up. `python benchmarks/accuracy.py rolling_tube` tries some scenes only, an
 from __future__ import annotations
 
 import argparse
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -148,12 +147,9 @@ def measure(scenes: Sequence[str] = (), *, resume: bool = False) -> Path:
     if unknown:
         raise SystemExit(f"no study of {', '.join(sorted(unknown))}: take any of {', '.join(c.scene for c in CASES)}")
     cases = [case for case in CASES if not scenes or case.scene in scenes]
-    started = time.perf_counter()
     done = run_cases(cases, STUDIES, resume=resume)
     page = STUDIES / PAGE.name if scenes else PAGE
-    accuracy_page.write(
-        page, [(case.scene, case.said, study) for case, study in done], time.perf_counter() - started, LEFT_OUT
-    )
+    accuracy_page.write(page, [(case.scene, case.said, study) for case, study in done], LEFT_OUT)
     return page
 
 

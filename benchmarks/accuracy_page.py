@@ -21,7 +21,7 @@ PLAIN = FuncFormatter(lambda value, _: f"{value:g}")
 STYLE = {"draft": ("C1", "o"), "standard": ("C0", "s"), "reference": ("C2", "D")}
 TEXT = """# What the presets cost, and how far off they are
 
-Written by `make bench ARGS=accuracy` in {minutes:.0f} min on {cores} cores of {processor}.
+Written by `make bench ARGS=accuracy` on {cores} cores of {processor}.
 
 A study (`leito study`) of each scene, shortened where that is said. Errors are those of a quantity against its closed
 form or the finest setting of its scene (step and mesh twice as fine; four times for the first three), over its
@@ -43,14 +43,14 @@ the reference knows itself; the marker then stands at the bound.
 """
 
 
-def write(path: Path, done: Sequence[Done], seconds: float, left_out: str) -> None:
+def write(path: Path, done: Sequence[Done], left_out: str) -> None:
     """Write the page and its pictures."""
     path.parent.mkdir(parents=True, exist_ok=True)
     about = report.machine()
     _draw(path.with_suffix(".png"), done)
     path.write_text(
         TEXT.format(
-            minutes=max(1.0, seconds / 60.0), cores=about["cores"], processor=about["processor"], presets=_presets(),
+            cores=about["cores"], processor=about["processor"], presets=_presets(),
             scenes="\n\n".join(_scene(path, *one) for one in done), left_out=left_out,
         )
     )  # fmt: skip
@@ -68,7 +68,7 @@ def _presets() -> str:
 def _scene(path: Path, scene: str, said: str, study: Study) -> str:
     parts = [f"## {scene}", *([said] if said else []), _table(study)]
     parts += _pictures(path, scene, study)
-    missing = [f"- {line}" for line in study.without_result()]
+    missing = [f"- {line}".replace(f"{study.folder}/", "") for line in study.without_result()]
     if missing:
         parts.append("\n".join(["Without a result:", "", *missing]))
     return "\n\n".join(parts)

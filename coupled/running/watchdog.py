@@ -155,13 +155,22 @@ def _energy_made_in_all(model: Model, seen: Glance, since: Glance) -> Sign | Non
 
 
 def _round_off(model: Model) -> float:
-    """Energy [J/m] of grains that go to and fro by the round-off of their places in a step: below it nothing counts."""
-    if model.particles is None or not model.particles.grains.n_free:
-        return 0.0
-    grains, free = model.particles.grains, slice(model.particles.grains.n_free)
-    reach = max(float(np.abs(grains.x).max()), float(np.abs(grains.y).max()))
-    speed = ROUND_OFF * reach / model.particles.time_step
-    return 0.5 * speed**2 * float((1.0 / grains.inverse_mass[free]).sum())
+    """Energy [J/m] of what goes to and fro by the round-off of its places in a step: below it nothing counts."""
+    energy = 0.0
+    if model.particles is not None and model.particles.grains.n_free:
+        grains, free = model.particles.grains, slice(model.particles.grains.n_free)
+        reach = max(float(np.abs(grains.x).max()), float(np.abs(grains.y).max()))
+        energy += _jittering(float((1.0 / grains.inverse_mass[free]).sum()), reach, model.particles.time_step)
+    if model.structure is not None:
+        body = model.structure
+        reach = float(np.abs(body.mesh.outer_polyline.points + body.boundary_displacement).max())
+        energy += _jittering(body.mass, reach, model.window)
+    return energy
+
+
+def _jittering(mass: float, reach: float, step: float) -> float:
+    """Kinetic energy [J/m] of the round-off of places that reach so far [m], gone in a step [s]."""
+    return 0.5 * mass * (ROUND_OFF * reach / step) ** 2
 
 
 def _present(balance: Balance) -> float:
