@@ -70,5 +70,5 @@ def test_scene_chooses_the_scheme_and_the_ledger_closes(tables: dict, scheme: fe
     assert ("structure_loss_scheme" in end.entries) == (not scheme.conserves)
     if not scheme.conserves:
         assert end.entries["structure_loss_scheme"] > 0.0
-    # Round-off of 400 steps with some thousand terms.
-    assert abs(end.error) < 1e5 * np.finfo(float).eps * start["structure_strain"]
+    # Round-off of 400 solutions: 1e-10 to 1.3e-9 J/m, whichever the order of operations; what is forgotten shows above 1e-6.
+    assert abs(end.error) < 4e5 * np.finfo(float).eps * start["structure_strain"]
