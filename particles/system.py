@@ -116,12 +116,11 @@ class ParticleSystem:
         self.shaking = shaking
         self._shaken = shaking_of(shaking, self.walls)
         self.time_step = float(time_step)
-        if scheme not in SCHEMES:
-            raise ParticleError(f"scheme {scheme!r} must be one of {', '.join(SCHEMES)}")
+        for name, value, allowed in (("scheme", scheme, SCHEMES), ("precision", precision, PRECISIONS)):
+            if value not in allowed:
+                raise ParticleError(f"{name} {value!r} must be one of {', '.join(allowed)}")
         self.scheme = scheme
         require("skin factor", skin_factor, above=0.0)
-        if precision not in PRECISIONS:
-            raise ParticleError(f"precision {precision!r} must be one of {', '.join(PRECISIONS)}")
         grains.keep_in(precision)
         grains.keep_leads(scheme == "velocity_verlet")
         if not contact.spins:
@@ -129,8 +128,7 @@ class ParticleSystem:
         self.gravity = np.array(gravity, float)
         self.damping = damping
         self.threads = use_threads(threads)
-        self.steps_done = 0
-        self.rebuilds = 0
+        self.steps_done = self.rebuilds = 0
         self.blocks = block_starts(grains.n_free, len(grains))
         self.impulse = np.zeros((len(grains) - grains.n_free, 3))
         self.ledger = None
