@@ -23,7 +23,7 @@ from coupled.measuring.samples import Group, intervals
 from coupled.measuring.states import rolls_of
 from particles import ParticleError
 
-TONES = {"0.9": "#5d6d7e", "1.1": "#e09f3e", "1.3": "#c1440e"}
+TONES = {"0.9": "#5d6d7e", "1.1": "#e09f3e", "1.3": "#c1440e", "1.5": "#7b1e1e"}
 KINDS = {"walls_light": "#2a9d8f", "walls": "#1f5a94", "walls_heavy": "#7b4b94"}
 ROLLS = ("walls", "smooth_walls", "periodic_25000")  # with the largest Gamma
 BAND = 3  # samples for an interval to be drawn
@@ -73,7 +73,7 @@ def _densities(found: Found, titles: dict[str, str], folder: Path) -> str:
     there = {name: tone for name, tone in KINDS.items() if name in found}
     if len(there) < 2:
         return ""
-    figure, panels = plt.subplots(1, len(TONES), figsize=(12.0, 3.8), layout="constrained", sharey=True)
+    figure, panels = plt.subplots(1, len(TONES), figsize=(14.0, 3.8), layout="constrained", sharey=True)
     for axes, gamma in zip(panels, TONES, strict=True):
         for name, tone in there.items():
             if gamma in found[name]:
@@ -108,7 +108,7 @@ def _rises(found: Found, titles: dict[str, str], folder: Path) -> str:
 
 
 def draw_rolls(found: Found, folder: Path) -> tuple[list[str], dict[str, str]]:
-    """Convection at the largest Gamma; names of pictures, and the roll of each case in words."""
+    """Convection at the largest Gamma of all cases; names of pictures, and the roll of each case in words."""
     written, told = [], {}
     titles = {case.name: case.title for case in CASES}
     gamma = GAMMAS[-1]

@@ -81,7 +81,7 @@ def _ways(found: Found) -> Iterator[Statement]:
 
 
 def _orders(found: Found) -> Iterator[Statement]:
-    """Differences between samples of one seed, of the mean height: who is at the top does not rise further."""
+    """Differences between samples of one seed, of the mean height until the first of the two is at the top."""
     said = (
         ("walls_light", "walls", "light ones faster than equal ones"),
         ("walls", "walls_heavy", "equal ones faster than heavy ones"),
@@ -91,9 +91,15 @@ def _orders(found: Found) -> Iterator[Statement]:
         for gamma in found.get(fast, {}):
             if float(gamma) > 1.0:
                 pairs = paired(found[fast][gamma], found.get(slow, {}).get(gamma, []))
-                values = tuple(a.mean_rise - b.mean_rise for a, b in pairs)
-                what = f"mean height over the start less that of {slow.replace('_', ' ')}, Gamma = {gamma}"
+                values = tuple(a.mean_rise(until) - b.mean_rise(until) for a, b, until in map(_race, pairs))
+                what = f"mean height on the way over that of {slow.replace('_', ' ')}, Gamma = {gamma}"
                 yield Statement(case=fast, source=source, what=what, values=values, allowed=MORE)
+
+
+def _race(pair: tuple[Ascent, Ascent]) -> tuple[Ascent, Ascent, float]:
+    """A pair, and the period at which the first of the two comes to the top, or the end."""
+    tops = [top for ascent in pair if (top := at_top(ascent)) is not None]
+    return *pair, min([*tops, WHOLE])
 
 
 def _ends(found: Found) -> Iterator[Statement]:
