@@ -146,7 +146,7 @@ def _particles(
     options = {
         "time_step": scene.time.step,
         "walls": box_walls(scene),
-        "shaking": shaking_of(scene),
+        "shaking": shaking_of(scene, BODY + 1),
         "period": (None, None) if scene.box is None else scene.box.period,
         "scheme": scene.time.integrator,
         "precision": "float64" if scene.grains is None else scene.grains.precision,

@@ -51,8 +51,8 @@ def box_walls(scene: Scene) -> list[dem.Wall]:
     return [replace(wall, material=of(wall.name), shaken=wall.name in shaken) for wall in walls]
 
 
-def shaking_of(scene: Scene) -> dem.Shaking | None:
-    """The motion of the walls."""
+def shaking_of(scene: Scene, first_row: int) -> dem.Shaking | None:
+    """The motion of the walls and rows; `first_row` is the number of the body that the first row is."""
     table = scene.shaking
     if table is None:
         return None
@@ -65,6 +65,7 @@ def shaking_of(scene: Scene) -> dem.Shaking | None:
         start=table.start,
         stop=table.stop,
         ramp=period if table.ramp is None else table.ramp,
+        bodies=tuple(first_row + index for index in scene.shaken_rows),
     )
 
 

@@ -1,20 +1,22 @@
-"""Walls that move to and fro."""
+"""Walls and prescribed grains that move to and fro."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from particles.errors import ParticleError, require
 from particles.kernels.layout import ShakingNumbers
 from particles.kernels.shaking import displacement
+from particles.state import Grains
 from particles.walls import Wall
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shaking:
-    """Harmonic motion of all walls that are `shaken`, along one line.
+    """Harmonic motion of all walls that are `shaken`, and of prescribed bodies, along one line.
 
     With ``u = (t - start)/period`` the displacement is ``A (1 - cos 2 pi u)``, from the lowest point and from rest,
     or ``A sin 2 pi u``, times an envelope that rises within `ramp` from `start` on and falls within `ramp` from
@@ -38,6 +40,9 @@ class Shaking:
         When it ends [s]: with a ramp the envelope falls from then on, without one the period in hand is finished.
     ramp : float
         How long the envelope rises and falls [s], by ``3 s^2 - 2 s^3``; 0: at once.
+    bodies : tuple of int
+        Numbers of the prescribed bodies (`Grains.with_prescribed`) that move along. Their place at no displacement
+        is that at which the system gets them; contacts see their velocity, and their work is `work_by`.
     """
 
     amplitude: float
@@ -47,6 +52,7 @@ class Shaking:
     start: float = 0.0
     stop: float | None = None
     ramp: float = 0.0
+    bodies: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         require("shaking amplitude", self.amplitude, above=0.0)
@@ -70,18 +76,22 @@ class Shaking:
         """Displacement [m] at a time [s]."""
         return float(displacement(self.numbers(()), time))
 
-    def numbers(self, walls: Sequence[Wall]) -> ShakingNumbers:
-        """What the kernels need, for the walls of a system."""
+    def numbers(self, walls: Sequence[Wall], grains: Grains | None = None) -> ShakingNumbers:
+        """What the kernels need, for the walls and the grains of a system."""
         for wall in walls:
             if wall.shaken and any(wall.velocity):
                 raise ParticleError(
                     f"{wall.name} is shaken and has a velocity of its own, {wall.velocity}: leave out one of them"
                 )
+        carried = self._carried(grains)
         home = np.array([wall.point for wall in walls], float).reshape(-1, 2)
         return ShakingNumbers(
             moves=np.array([wall.shaken for wall in walls], bool),
             home_x=home[:, 0].copy(),
             home_y=home[:, 1].copy(),
+            carried=carried if len(carried) else None,
+            carried_x=np.zeros(0) if grains is None else grains.x[carried],
+            carried_y=np.zeros(0) if grains is None else grains.y[carried],
             along_x=self.along[0],
             along_y=self.along[1],
             amplitude=float(self.amplitude),
@@ -91,6 +101,16 @@ class Shaking:
             ramp=float(self.ramp),
             from_rest=bool(self.from_rest),
         )
+
+    def _carried(self, grains: Grains | None) -> NDArray[np.int64]:
+        """Places of the prescribed grains that move along."""
+        if grains is None or not self.bodies:
+            return np.zeros(0, np.int64)
+        there = grains.bodies()
+        for body in self.bodies:
+            if body not in there:
+                raise ParticleError(f"shaking moves body {body}, which no prescribed grain has: there are {[*there]}")
+        return np.nonzero(np.isin(grains.body, self.bodies))[0]
 
     def _last(self) -> float:
         """When the envelope begins to fall, or without a ramp when the last whole period is over [s]."""
@@ -103,13 +123,13 @@ class Shaking:
         return self.start + periods * self.period
 
 
-def shaking_of(shaking: Shaking | None, walls: Sequence[Wall]) -> ShakingNumbers | None:
-    """What the kernels need of the shaking; refused if there is no wall to shake, or walls and no shaking."""
+def shaking_of(shaking: Shaking | None, walls: Sequence[Wall], grains: Grains) -> ShakingNumbers | None:
+    """What the kernels need of the shaking; refused if there is nothing to shake, or walls and no shaking."""
     shaken = [wall.name for wall in walls if wall.shaken]
-    if (shaking is None) == bool(shaken):
-        raise ParticleError(
-            f"{shaken[0]} is shaken, but nothing says how: give shaking=Shaking(...)"
-            if shaken
-            else "shaking moves no wall: give Wall(..., shaken=True)"
-        )
-    return None if shaking is None else shaking.numbers(walls)
+    if shaking is None:
+        if shaken:
+            raise ParticleError(f"{shaken[0]} is shaken, but nothing says how: give shaking=Shaking(...)")
+        return None
+    if not shaken and not shaking.bodies:
+        raise ParticleError("shaking moves no wall: give Wall(..., shaken=True), or Shaking(..., bodies=...)")
+    return shaking.numbers(walls, grains)

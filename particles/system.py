@@ -52,7 +52,7 @@ class ParticleSystem:
         dt [s].
     walls : sequence of Wall
     shaking : Shaking, optional
-        Motion of the walls that are `shaken`.
+        Motion of the walls that are `shaken`, and of prescribed bodies.
     facets : Facets, optional
         A polyline that moves with its nodes; not together with a period.
     gravity : (2,) floats
@@ -114,7 +114,7 @@ class ParticleSystem:
         self.contact = contact
         self.walls = tuple(walls)
         self.shaking = shaking
-        self._shaken = shaking_of(shaking, self.walls)
+        self._shaken = shaking_of(shaking, self.walls, grains)
         self.time_step = float(time_step)
         for name, value, allowed in (("scheme", scheme, SCHEMES), ("precision", precision, PRECISIONS)):
             if value not in allowed:

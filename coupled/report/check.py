@@ -94,7 +94,9 @@ def _shaking_rows(built: Built) -> list[Row]:
     if motion is None:
         return []
     omega = 2.0 * math.pi / motion.period
+    walls = [wall.name for wall in built.model.particles.walls if wall.shaken]
     rows = [
+        ("moves", ", ".join([*walls, *(f"rows.{index}" for index in built.scene.shaken_rows)])),
         ("amplitude, period", f"{motion.amplitude:.4g} m, {motion.period:.6g} s"),
         ("period in steps", f"{motion.period / built.scene.time.step:.6g}"),
         ("largest velocity", f"{motion.amplitude * omega:.4g} m/s"),

@@ -7,10 +7,12 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Discriminator, Field, Tag
 
 from coupled.scene.shape import Shape
-from coupled.scene.types import Count, Positive, Table, Vector
+from coupled.scene.types import Count, Flag, Positive, Table, Vector
 
 RowName = Annotated[str, Field(min_length=1)] | None
 ROW_NAME = Field(None, description="name of its material in the contact law; absent: that of the free grains")
+
+SHAKEN = Field(None, description="whether the row moves with [shaking]; absent: it does where there is one")
 
 
 class Interface(Table):
@@ -75,6 +77,7 @@ class Row(Table):
     radius: Positive = Field(description="radius [m]")
     name: RowName = ROW_NAME
     velocity: Vector = Field((0.0, 0.0), description="constant velocity of the row [m/s]")
+    shaken: Flag | None = SHAKEN
 
 
 class RowUnder(Table):
@@ -85,6 +88,7 @@ class RowUnder(Table):
     under: str = Field(description="boundary of the structure")
     radius: Positive = Field(description="radius [m]")
     name: RowName = ROW_NAME
+    shaken: Flag | None = SHAKEN
 
 
 def _row_kind(data: Any) -> str:

@@ -34,12 +34,12 @@ class Scene(Table):
     box: Box | None = Field(None, description="rigid walls and periodic sides")
     grains: AnyGrains | None = Field(None, description="free grains")
     intruders: tuple[Intruder, ...] = Field((), description="grains of their own size and density, followed")
-    shaking: Shaking | None = Field(None, description="motion of the walls")
+    shaking: Shaking | None = Field(None, description="motion of the walls and rows")
     contact: Contact | None = Field(None, description="contact law")
     damping: Damping | None = Field(None, description="global damping of the grains")
     structure: Structure | None = Field(None, description="structure")
     interface: Interface | None = Field(None, description="glued grains or facets, where grains meet the structure")
-    rows: tuple[AnyRow, ...] = Field((), description="rows of fixed grains")
+    rows: tuple[AnyRow, ...] = Field((), description="rows of fixed grains, or of grains that move")
     output: Output = Field(default_factory=Output, description="what is written")
     quantities: tuple[Quantity, ...] = Field((), description="numbers of interest, told at the end of a run")
     preset: Preset | None = Field(None, description="what a preset did to this scene, written where it is read")
@@ -66,6 +66,13 @@ class Scene(Table):
     def _tables_agree(self) -> Scene:
         check_rules(self)
         return self
+
+    @property
+    def shaken_rows(self) -> tuple[int, ...]:
+        """The rows, numbered from 0, that move with the shaken walls."""
+        if self.shaking is None:
+            return ()
+        return tuple(index for index, row in enumerate(self.rows) if row.shaken is not False)
 
     @property
     def first_grains(self) -> Grains | None:

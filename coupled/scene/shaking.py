@@ -1,4 +1,4 @@
-"""Table of the shaken walls."""
+"""Table of the shaken walls and rows."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from coupled.scene.types import Count, NonNegative, Positive, Table, Vector
 
 
 class Shaking(Table):
-    """Walls of the box that move to and fro: ``A (1 - cos(omega t))`` or ``A sin(omega t)``."""
+    """Walls of the box, and rows of grains, that move to and fro: ``A (1 - cos(omega t))`` or ``A sin(omega t)``."""
 
     gamma: Positive | None = Field(None, description="Gamma = A omega^2/g [-], instead of amplitude")
     amplitude: Positive | None = Field(None, description="A, half the stroke [m]")

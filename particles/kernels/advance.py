@@ -9,7 +9,7 @@ from particles.kernels.jit import kernel, threaded_kernel
 from particles.kernels.laws.response import Laws
 from particles.kernels.laws.tangential import present
 from particles.kernels.motion import add_incoming, drift, kick, prescribed_work
-from particles.kernels.shaking import shake
+from particles.kernels.shaking import carry, shake
 
 
 @kernel
@@ -69,6 +69,14 @@ def move_walls(walls, shaking, step, reach2, dt):
     return stale
 
 
+@kernel
+def move_rows(grains, shaking, lead, ledger, step, reach2, dt):
+    """Move the prescribed grains that shake with the walls to a step. True if one went too far for the list."""
+    if shaking is None:
+        return False
+    return carry(shaking.carried, grains, shaking, lead, ledger, step, reach2, dt)
+
+
 def _forces(grains, pairs, walls, facets, normal, tangential, rolling, lead, ledger, dt):
     """All contact forces at the present positions."""
     n_blocks = grains.block_start.shape[0] - 1
@@ -100,7 +108,9 @@ def _advance(
     if steps > 0 and not drifted:
         for b in numba.prange(n_blocks):
             stale[b] = block_drift(b, grains, tangential, ledger, reach2, dt)
-        if move_walls(walls, shaking, done + 1, reach2, dt) | move_nodes(facets, ledger, reach2, dt) | stale.any():
+        moved = move_walls(walls, shaking, done + 1, reach2, dt)
+        moved |= move_rows(grains, shaking, lead, ledger, done + 1, reach2, dt)
+        if moved | move_nodes(facets, ledger, reach2, dt) | stale.any():
             return 0, 1
     for step in range(steps):
         drifts = step + 1 < steps
@@ -123,6 +133,7 @@ def _advance(
         if not drifts:
             break
         moved = move_walls(walls, shaking, done + step + 2, reach2, dt)
+        moved |= move_rows(grains, shaking, lead, ledger, done + step + 2, reach2, dt)
         if moved | move_nodes(facets, ledger, reach2, dt) | stale.any():
             return step + 1, 1
     return steps, 0

@@ -102,11 +102,14 @@ class WallArrays(NamedTuple):
 
 
 class ShakingNumbers(NamedTuple):
-    """Motion of walls along a line, a waveform of the time since `start` (`kernels.shaking`)."""
+    """Motion of walls and prescribed grains along a line, a waveform of the time since `start` (`kernels.shaking`)."""
 
     moves: Array  # (n_walls,) bool
     home_x: Array  # (n_walls,) the point of each wall at no displacement
     home_y: Array
+    carried: Array | None  # (n_carried,) places of the prescribed grains that move along; None: there are none
+    carried_x: Array  # (n_carried,) where they are at no displacement
+    carried_y: Array
     along_x: float  # unit vector of the motion
     along_y: float
     amplitude: float

@@ -23,12 +23,24 @@ BAD: dict[str, Case] = {
     "wall that is not there": (SHAKEN, {"shaking.walls": ["lid"]}, "shaking.walls.0", ("no wall of the box", "floor")),
     "wall twice": (SHAKEN, {"shaking.walls": ["floor", "floor"]}, "shaking.walls", ("twice",)),
     "no walls": (SHAKEN, {"box.walls": []}, "box.walls", ("missing", "[shaking]")),
+    "row that nothing shakes": (
+        RIGID,
+        {"rows": [(_ROW := {"start": [0.0, 0.01], "end": [0.1, 0.01], "count": 5, "radius": 1e-3}) | {"shaken": True}]},
+        "rows.0.shaken",
+        ("[shaking]", "remove the key"),
+    ),
+    "row that moves twice": (
+        SHAKEN,
+        {"rows": [_ROW, _ROW | {"velocity": [1.0, 0.0]}]},
+        "rows.1.velocity",
+        ("moves with [shaking]", "shaken = false"),
+    ),
     "no grains to shake": (
         RIGID,
         {
             "grains": GONE,
             "shaking": {"gamma": 1.0, "period": 0.1},
-            "rows": [_ROW := {"start": [0.0, 0.01], "end": [0.1, 0.01], "count": 5, "radius": 1e-3}],
+            "rows": [_ROW],
         },
         "shaking",
         ("free grains",),

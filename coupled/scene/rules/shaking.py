@@ -1,4 +1,4 @@
-"""Rules of the shaken walls."""
+"""Rules of the shaken walls and of the rows that move with them."""
 
 from __future__ import annotations
 
@@ -17,15 +17,16 @@ FEWEST_STEPS = 20  # in a period: a step then turns the phase by less than a thi
 def check_shaking(scene: Scene) -> None:
     """Check that the motion is said once, and that there are walls to move."""
     shaking = scene.shaking
+    _check_rows(scene)
     if shaking is None:
         return
     if scene.grains is None:
         raise refusal("shaking", {}, "moves walls, which meet free grains alone; add [grains] or remove it")
-    if scene.box is None or not scene.box.walls:
-        raise missing("box.walls", "there is no wall for [shaking] to move; add [box] with walls")
+    names = () if scene.box is None else scene.box.walls
+    if not names and not scene.shaken_rows:
+        raise missing("box.walls", "there is no wall or row for [shaking] to move; add [box] with walls, or [[rows]]")
     for index, wall in enumerate(shaking.walls or ()):
-        if wall not in scene.box.walls:
-            names = scene.box.walls
+        if wall not in names:
             raise refusal(f"shaking.walls.{index}", wall, f"is no wall of the box; {nearest(wall, names)}")
     if len(set(shaking.walls or ())) < len(shaking.walls or ()):
         raise refusal("shaking.walls", list(shaking.walls), "names a wall twice; name each once")
@@ -36,6 +37,19 @@ def check_shaking(scene: Scene) -> None:
     if shaking.stop is not None and not shaking.stop > shaking.start:
         raise refusal("shaking.stop", shaking.stop, f"must be later than shaking.start = {shaking.start:g} s")
     _check_period(scene, shaking)
+
+
+def _check_rows(scene: Scene) -> None:
+    """Check that no row moves in two ways, or in one that nothing says."""
+    for index, row in enumerate(scene.rows):
+        if row.shaken and scene.shaking is None:
+            raise refusal(f"rows.{index}.shaken", True, "asks for [shaking], which says how; add it or remove the key")
+        if index in scene.shaken_rows and any(getattr(row, "velocity", ())):
+            raise refusal(
+                f"rows.{index}.velocity",
+                list(row.velocity),
+                "is given to a row that moves with [shaking]; remove it, or give the row shaken = false",
+            )
 
 
 def _check_one(shaking: Shaking, first: str, second: str, meaning: str) -> None:
