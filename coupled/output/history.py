@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import os
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -32,18 +33,21 @@ class History:
             self._keep(keep_until)
 
     def _keep(self, until: float) -> None:
-        with open(self.path, newline="") as file:
-            rows = [row for row in csv.reader(file)]
-        if not rows:
-            return
-        self._names = [_bare(name) for name in rows[0]]
-        # times are written exactly (shortest repr), the margin only covers a cut last row
-        whole = [row for row in rows[1:] if len(row) == len(rows[0]) and float(row[0]) <= until]
         beside = self.path.with_suffix(".part")
-        with open(beside, "w", newline="") as file:
-            csv.writer(file).writerows([rows[0], *whole])
+        with open(self.path, newline="") as file, open(beside, "w", newline="") as kept:
+            rows, writer = csv.reader(file), csv.writer(kept)
+            heading = next(rows, None)
+            if heading is None:
+                beside.unlink()
+                return
+            self._names = [_bare(name) for name in heading]
+            writer.writerow(heading)
+            for row in rows:
+                # times are written exactly (shortest repr), the margin only covers a cut last row
+                if len(row) == len(heading) and float(row[0]) <= until:
+                    writer.writerow(row)
+                    self.last_time = float(row[0])
         os.replace(beside, self.path)
-        self.last_time = float(whole[-1][0]) if whole else -math.inf
 
     def write(self, row: dict[str, float]) -> None:
         """Append a row; the first one makes the header. Columns have their names, whatever the units beside them."""
@@ -59,11 +63,13 @@ class History:
 
 
 def read_history(path: Path) -> dict[str, NDArray[np.float64]]:
-    """Columns of a history by name without the unit."""
+    """Columns of a history by name without the unit, read into no more memory than some tables of them."""
     with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    table = np.array(rows[1:], dtype=float).reshape(-1, len(rows[0]))
-    return {_bare(name): column for name, column in zip(rows[0], table.T, strict=True)}
+        names = next(csv.reader(file))
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message=".*contained no data")
+            table = np.loadtxt(file, delimiter=",", ndmin=2).reshape(-1, len(names))
+    return {_bare(name): column for name, column in zip(names, table.T, strict=True)}
 
 
 def _bare(name: str) -> str:
