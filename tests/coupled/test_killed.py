@@ -18,7 +18,7 @@ from coupled.running.run import run_scene
 from coupled.scene import Scene, load_scene
 from coupled.templates import write_template
 
-DURATION, KILLED_UNTIL = 0.06, 0.04  # [s]; the rest, so that a kill from outside cannot come too late
+DURATION, KILLED_UNTIL = 0.06, 0.04  # [s]
 SETS = [
     f"time.duration={DURATION}", "output.history_interval=0.001", "output.frames_per_second=100",
     "output.checkpoint_interval=0.003", "output.figures=false", "bed.time.duration=0.3", "bed.output.figures=false",
@@ -95,7 +95,15 @@ def in_a_row(out: Path, moment: float) -> None:
 
 
 def from_outside(out: Path, moment: float) -> None:
-    """Be killed by the parent, wherever it is."""
+    """Be killed by the parent, wherever it is; a run does not go on to its end before that."""
+    write = History.write
+
+    def wait(self: History, row: dict[str, float]) -> None:
+        write(self, row)
+        if self.last_time >= KILLED_UNTIL:
+            time.sleep(300.0)
+
+    History.write = wait  # type: ignore[method-assign]
 
 
 def killed(scene: Scene, out: Path, moment: float, way: Callable[[Path, float], None]) -> bool:

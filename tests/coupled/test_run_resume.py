@@ -6,11 +6,11 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from held_leito import held_leito, wait_until
 from same_run import assert_same_run
 
 from coupled.errors import LeitoError
@@ -43,28 +43,17 @@ def whole(place: Path, scene: Scene) -> Path:
     return run_scene(scene, out=place / "runs" / "whole", threads=1, progress=False)
 
 
-def _start(place: Path, out: str, *extra: str) -> subprocess.Popen[str]:
-    sets = [part for text in QUICK for part in ("--set", text)]
-    command = [*LEITO, "run", "tube.toml", "--out", f"runs/{out}", "--threads", "1", "--no-progress", *sets, *extra]
-    return subprocess.Popen(command, cwd=place, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-
-
-def _wait_for(path: Path, process: subprocess.Popen[str]) -> None:
-    begun = time.monotonic()
-    while not path.exists():
-        assert process.poll() is None and time.monotonic() - begun < 120.0, process.communicate()
-        time.sleep(0.005)
-
-
 @pytest.mark.parametrize("wish", [signal.SIGINT, signal.SIGTERM])
 def test_a_stop_leaves_a_checkpoint_and_says_how_to_go_on(
     wish: signal.Signals, place: Path, scene: Scene, whole: Path
 ) -> None:
     out = place / "runs" / wish.name
-    process = _start(place, wish.name)
-    _wait_for(out / "checkpoint.h5", process)
+    sets = [part for text in QUICK for part in ("--set", text)]
+    command = ["run", "tube.toml", "--out", f"runs/{wish.name}", "--threads", "1", "--no-progress", *sets]
+    process = held_leito(command, at=0.2, cwd=place)
+    wait_until((out / "checkpoint.h5").exists, process)
     process.send_signal(wish)
-    _, said = process.communicate(timeout=120)
+    _, said = process.communicate(timeout=300)
     assert process.returncode == 130, said
     assert "stopped at t = " in said and "--resume" in said and "Traceback" not in said
     stopped, _ = checkpoint.load(out / "checkpoint.h5")

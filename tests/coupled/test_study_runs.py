@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import csv
 import math
-import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 import tomli_w
+from held_leito import held_leito, wait_until
 
 from coupled.errors import LeitoError
 from coupled.scene import Scene
@@ -137,23 +136,23 @@ def test_chance_is_told_from_error_and_threads_change_nothing(tmp_path):
 @pytest.mark.parametrize(("wish", "code"), [(signal.SIGKILL, -9), (signal.SIGINT, 130)])
 def test_a_study_that_is_ended_goes_on_where_it_was(wish, code, tmp_path):
     path = tmp_path / "scene.toml"
-    path.write_text(tomli_w.dumps(BEAM | {"time": {"duration": 0.2, "step": 3.6e-5}}))
+    path.write_text(tomli_w.dumps(BEAM | {"output": BEAM["output"] | {"checkpoint_interval": 1.44e-3}}))
     command = [
-        sys.executable, "-m", "coupled.cli", "study", str(path), "--values", "step=4",
+        "study", str(path), "--values", "step=4",
         "--jobs", "1", "--reference", "time.step=9e-6", "--out", str(tmp_path / "study"), "--no-progress",
     ]  # fmt: skip
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
     runs = tmp_path / "study" / "runs"
-    limit = time.monotonic() + 60.0
-    while not (made := list(runs.glob("*/summary.json"))) and time.monotonic() < limit:
-        time.sleep(0.02)
-    os.kill(process.pid, wish)
-    said = process.communicate(timeout=60)[1].decode()
-    assert made and process.returncode == code, said
+    process = held_leito(command, at=0.01, after=1, start_new_session=True)
+    wait_until(lambda: len(list(runs.glob("*/checkpoint.h5"))) == 2, process)
+    process.send_signal(wish)
+    said = process.communicate(timeout=300)[1]
+    assert process.returncode == code, said
     assert code < 0 or "the study is stopped; go on with --resume" in said
-    moments = {summary: summary.stat().st_mtime_ns for summary in made}
-    assert len(moments) < 5 and not (tmp_path / "study" / "study.csv").exists()
-    again = subprocess.run([*command, "--resume"], capture_output=True, text=True, timeout=120)
+    moments = {summary: summary.stat().st_mtime_ns for summary in runs.glob("*/summary.json")}
+    assert len(moments) == 1 and not (tmp_path / "study" / "study.csv").exists()
+    again = subprocess.run(
+        [sys.executable, "-m", "coupled.cli", *command, "--resume"], capture_output=True, text=True, timeout=300
+    )
     assert again.returncode == 0, again.stderr
     assert all(path.stat().st_mtime_ns == moment for path, moment in moments.items())
     assert len(list(runs.glob("*/summary.json"))) == 5
