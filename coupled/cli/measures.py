@@ -11,12 +11,18 @@ import typer
 from coupled.cli.speech import print_table
 from coupled.errors import LeitoError
 
+QUIET = "quiet"
+
 
 def measure(
     folders: Annotated[list[Path], typer.Argument(help="Runs, or the folder of an ensemble.", metavar="FOLDER...")],
     out: Annotated[Path | None, typer.Option(help="Where to write; absent: measures in the first folder.")] = None,
     first: Annotated[int, typer.Option(min=0, help="First period of the shaking that counts.")] = 0,
     last: Annotated[int | None, typer.Option(min=1, help="Last period; absent: to the end.")] = None,
+    phase: Annotated[
+        str,
+        typer.Option(help="Of the period, 0 to below 1, at which heights are read; quiet: where they spread least."),
+    ] = "0",
 ) -> None:
     """Measure rises, convection, profiles and large deviations of shaken runs."""
     if last is not None and last <= first:
@@ -25,9 +31,22 @@ def measure(
     from coupled.measuring.measure import rows_told
     from coupled.measuring.rises import Periods
 
-    found, written = measured(folders, out=out, periods=Periods(first=first, last=last))
+    found, written = measured(folders, out=out, periods=Periods(first=first, last=last, phase=_phase(phase)))
     print_table(("case", "quantity", "value"), rows_told(found))
     for note in (note for one in found for note in one.notes):
         print(f"leito: note: {note}", file=sys.stderr)
     for path in written:
         print(path)
+
+
+def _phase(text: str) -> float | None:
+    """A number from 0 to below 1, or None for the quietest."""
+    if text == QUIET:
+        return None
+    try:
+        phase = float(text)
+    except ValueError:
+        phase = -1.0
+    if not 0.0 <= phase < 1.0:
+        raise LeitoError(f'--phase {text} must be a number from 0 to below 1, or "{QUIET}"')
+    return phase

@@ -18,6 +18,7 @@ from coupled.measuring.samples import told
 from coupled.measuring.states import PROFILES
 
 FOLDER = "measures"
+MOMENTS = ("mean", "variance", "skewness", "excess")
 
 
 def measure(folders: Sequence[Path], *, out: Path | None = None, periods: Periods) -> tuple[list[Findings], list[Path]]:
@@ -65,6 +66,11 @@ def rows_told(found: Sequence[Findings]) -> list[tuple[str, ...]]:
             shown = rise.mean[np.isfinite(rise.mean)]
             rows.append((one.group.label, f"{rise.name}: height at first, at last", f"{shown[0]:.4g}, {shown[-1]:.4g}"))
             rows.append((one.group.label, f"{rise.name}: rise per period", _interval(told(rise.rate))))
+            if rise.deviations.moments:
+                longest = rise.deviations.moments[-1]
+                spread, half = longest.variance
+                what = f"{rise.name}: variance per period, windows of {longest.periods}"
+                rows.append((one.group.label, what, f"{spread:.4g} +- {half:.2g}"))
             if rise.deviations.slope is not None:
                 slope, half = rise.deviations.slope
                 rows.append((one.group.label, f"{rise.name}: slope of the symmetry", f"{slope:.4g} +- {half:.2g}"))
@@ -82,13 +88,18 @@ def _interval(found: dict[str, Any]) -> str:
     return f"{found['mean']:.4g} +- {found['half_width']:.2g}, {found['samples']} samples"
 
 
+def _with_bars(names: Iterable[str]) -> Iterator[str]:
+    """Columns of values, each with its half width."""
+    return (f"{name}{more}" for name in names for more in ("", "_half_width"))
+
+
 def _write_tables(found: Sequence[Findings], target: Path) -> list[Path]:
     tables: dict[str, tuple[tuple[str, ...], Iterable[Sequence[Any]]]] = {
         "rises": (("case", "sample", "intruder", "time", "height", "rise"), _rises(found)),
         "height": (("case", "intruder", "time", "mean", "half_width", "samples"), _heights(found)),
-        "profiles": (("case", "height", *(f"{name}{more}" for name in PROFILES for more in ("", "_half_width"))),
-                     _profiles(found)),
+        "profiles": (("case", "height", *_with_bars(PROFILES)), _profiles(found)),
         "convection": (("case", "x", "height", "along", "up", "count"), _convection(found)),
+        "windows": (("case", "intruder", "periods", *_with_bars(MOMENTS)), _moments(found)),
         "large_deviation": (("case", "intruder", "road", "periods", "v", "rate", "half_width"), _deviations(found)),
     }  # fmt: skip
     written = []
@@ -138,6 +149,14 @@ def _convection(found: Sequence[Findings]) -> Iterator[Sequence[Any]]:
                     yield one.group.label, _short(x), _short(y), _short(along), _short(up), count
 
 
+def _moments(found: Sequence[Findings]) -> Iterator[Sequence[Any]]:
+    for one in found:
+        for rise in one.rises:
+            for moments in rise.deviations.moments:
+                numbers = [_short(number) for name in MOMENTS for number in getattr(moments, name)]
+                yield one.group.label, rise.name, moments.periods, *numbers
+
+
 def _deviations(found: Sequence[Findings]) -> Iterator[Sequence[Any]]:
     for one in found:
         for rise in one.rises:
@@ -173,6 +192,7 @@ def _rise_numbers(rise: Rise) -> dict[str, Any]:
     shown = np.nonzero(np.isfinite(rise.mean))[0]
     numbers: dict[str, Any] = {
         "name": rise.name,
+        "phase": rise.phase,
         "periods": len(rise.time) - 1,
         "height_first": float(rise.mean[shown[0]]),
         "height_last": float(rise.mean[shown[-1]]),
@@ -182,6 +202,10 @@ def _rise_numbers(rise: Rise) -> dict[str, Any]:
     if found.lacks:
         return numbers | {"lacks": found.lacks}
     widest = found.limit.gap[np.isfinite(found.limit.gap)]
+    numbers["resampled"] = "samples" if found.whole else "blocks"
+    numbers["moments"] = [
+        {"periods": each.periods} | {name: getattr(each, name)._asdict() for name in MOMENTS} for each in found.moments
+    ]
     numbers["transform_settled_at"] = found.settled
     numbers["largest_gap_of_curves"] = float(widest.max()) if len(widest) else None
     numbers["symmetry"] = [

@@ -18,33 +18,46 @@ from particles.measures import (
     Resampling,
     Strobe,
     Symmetry,
+    WindowMoments,
     checked_sequences,
     cumulants,
     extrapolated,
     limit_of_slope,
+    quietest_phase,
     rate_function,
     strobe,
     symmetry,
     usual_edges,
+    window_moments,
 )
 
-ENOUGH_BLOCKS = 20  # for the longest windows, where the record allows
+ENOUGH_BLOCKS = 20  # for the longest windows, where the record allows; of as many samples whole ones are drawn
+PHASES = 10  # among which the quietest is sought
 TILTS = 25
 
 
 @dataclass(frozen=True, kw_only=True)
 class Periods:
-    """Which periods of the shaking count, from 0 on; `last` None: to the end of the record."""
+    """Which periods of the shaking count, from 0 on; `last` None: to the end of the record.
+
+    Heights are read at the `phase` of each, 0 to below 1; None: at that of `PHASES` at which single rises spread least.
+    """
 
     first: int = 0
     last: int | None = None
+    phase: float | None = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class LargeDeviations:
-    """What the windows of the rises say; `lacks` is a sentence where they say nothing."""
+    """What the windows of the rises say; `lacks` is a sentence where they say nothing.
+
+    `whole` tells whether error bars come from whole samples drawn again or from blocks within them.
+    """
 
     lengths: tuple[int, ...] = ()
+    whole: bool = False
+    moments: tuple[WindowMoments, ...] = ()
     curves: tuple[RateFunction, ...] = ()
     limit: Extrapolated | None = None
     tilted: dict[int, Cumulants] = field(default_factory=dict)
@@ -62,8 +75,10 @@ class Rise:
     ----------
     name : str
         Of its columns in the history.
+    phase : float
+        Of the period, at which heights are read.
     samples : tuple of Strobe
-        Height over the moving floor at phase 0 of each period [m].
+        Height over the moving floor at that phase of each period [m].
     time, mean, half_width : (k,)
         Of the heights over the samples, with the 95 % interval.
     count : (k,)
@@ -74,6 +89,7 @@ class Rise:
     """
 
     name: str
+    phase: float
     samples: tuple[Strobe, ...]
     time: Floats
     mean: Floats
@@ -103,50 +119,85 @@ def rise_of(group: Group, name: str, periods: Periods) -> Rise:
     ParticleError
         If a record holds less than one period of the shaking.
     """
-    samples = []
-    for record in group.records:
-        shaken = record.shaken
-        seen = strobe(record.history["time"], height_over_floor(record, name), period=shaken.period, start=shaken.start)
-        last = None if periods.last is None else periods.last + 1
-        samples.append(Strobe(seen.time[periods.first : last], seen.value[periods.first : last],
-                              seen.rise[periods.first : periods.last]))  # fmt: skip
-        if not len(samples[-1].rise):
-            raise ParticleError(
-                f"{record.folder} holds {len(seen.rise)} periods, none of them from {periods.first} to "
-                f"{'the end' if periods.last is None else periods.last}: choose others"
-            )
+    phase = periods.phase
+    if phase is None:
+        phases = [k / PHASES for k in range(PHASES)]
+        looks = [[_looks(record, name, periods, at).rise for record in group.records] for at in phases]
+        phase = phases[quietest_phase(looks)]
+    samples = [_looks(record, name, periods, phase) for record in group.records]
     longest = max(len(seen.time) for seen in samples)
     heights = [np.append(seen.value, np.full(longest - len(seen.value), np.nan)) for seen in samples]
     mean, half, count = intervals(heights)
     time = max((seen.time for seen in samples), key=len)
     return Rise(
-        name=name, samples=tuple(samples), time=time, mean=mean, half_width=half, count=count,
+        name=name, phase=phase, samples=tuple(samples), time=time, mean=mean, half_width=half, count=count,
         rate=confidence([float(seen.rise.mean()) for seen in samples]),
         deviations=large_deviations([seen.rise for seen in samples]),
     )  # fmt: skip
 
 
+def _looks(record: Record, name: str, periods: Periods, phase: float) -> Strobe:
+    """Heights of one intruder at a phase of the periods that count."""
+    shaken, time = record.shaken, record.history["time"]
+    seen = strobe(time, height_over_floor(record, name), period=shaken.period, start=shaken.start, phase=phase)
+    last = None if periods.last is None else periods.last + 1
+    kept = Strobe(
+        seen.time[periods.first : last], seen.value[periods.first : last], seen.rise[periods.first : periods.last]
+    )
+    if not len(kept.rise):
+        raise ParticleError(
+            f"{record.folder} holds {len(seen.rise)} periods, none of them from {periods.first} to "
+            f"{'the end' if periods.last is None else periods.last}: choose others"
+        )
+    return kept
+
+
 def large_deviations(rises: list[Floats]) -> LargeDeviations:
-    """Windows of 1, 2, 4 ... periods, as long as the records allow, and their limits."""
+    """Windows of 1, 2, 4 ... periods, as long as the records allow, and their limits.
+
+    From `ENOUGH_BLOCKS` samples on error bars come from whole samples drawn again: windows of one are not independent.
+    """
     try:
         sequences = checked_sequences(rises)
-        lengths = window_lengths(sequences)
-        sampling = Resampling(sequences=sequences, longest=lengths[-1])
+        whole = len(sequences) >= ENOUGH_BLOCKS
+        lengths = window_lengths(sequences, whole=whole)
+        sampling = Resampling(sequences=sequences, longest=lengths[-1], whole=whole)
         edges = usual_edges(sampling)
-        curves = tuple(rate_function(sampling, n, edges) for n in lengths)
+        moments = tuple(window_moments(sampling, n) for n in lengths)
+        curves = _curves(sampling, lengths, edges)
         limit = extrapolated(sampling, curves)
     except ParticleError as error:
         return LargeDeviations(lacks=str(error))
     tilted = {n: cumulants(sampling, n, _tilts(sampling, n)) for n in lengths}
     symmetries = tuple(symmetry(sampling, n) for n in lengths)
     return LargeDeviations(
-        lengths=lengths, curves=curves, limit=limit, tilted=tilted, settled=_settled(tilted),
-        symmetries=symmetries, slope=limit_of_slope(sampling, symmetries),
+        lengths=lengths, whole=whole, moments=moments, curves=curves, limit=limit, tilted=tilted,
+        settled=_settled(tilted), symmetries=symmetries, slope=limit_of_slope(sampling, symmetries),
     )  # fmt: skip
 
 
-def window_lengths(sequences: tuple[Floats, ...]) -> tuple[int, ...]:
+def _curves(sampling: Resampling, lengths: tuple[int, ...], edges: Floats) -> tuple[RateFunction, ...]:
+    """Histograms of the lengths at which windows lie about the mean: single periods of a bed that swings may have none.
+
+    Raises
+    ------
+    ParticleError
+        If there is no such length.
+    """
+    curves = []
+    for n in lengths:
+        try:
+            curves.append(rate_function(sampling, n, edges))
+        except ParticleError:
+            if n == lengths[-1] and not curves:
+                raise
+    return tuple(curves)
+
+
+def window_lengths(sequences: tuple[Floats, ...], *, whole: bool = False) -> tuple[int, ...]:
     """Powers of two up to the longest that leaves `ENOUGH_BLOCKS` blocks; at least 1, 2 and 4 where ten are left.
+
+    Of samples drawn `whole`, up to the longest of which as many samples hold two side by side.
 
     Raises
     ------
@@ -156,7 +207,7 @@ def window_lengths(sequences: tuple[Floats, ...]) -> tuple[int, ...]:
     lengths = [1]
     while True:
         try:
-            blocks = Resampling(sequences=sequences, longest=2 * lengths[-1]).blocks
+            blocks = Resampling(sequences=sequences, longest=2 * lengths[-1], whole=whole).blocks
         except ParticleError:
             break
         if blocks < ENOUGH_BLOCKS and len(lengths) > 2:

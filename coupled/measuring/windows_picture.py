@@ -37,6 +37,10 @@ def large_deviation(one: Findings) -> Figure | None:
         )
     chosen = found.tilted[found.settled or found.lengths[-1]]
     known = np.isfinite(chosen.rate)
+    longest = found.moments[-1]
+    v = found.curves[-1].v
+    label = f"Gaussian, variance of n = {longest.periods}"
+    left.plot(v, longest.gaussian_rate(v), "--", color="0.5", lw=1.0, zorder=0, label=label)
     left.plot(chosen.v[known], chosen.rate[known], "r-", lw=1.4, label=_transform_label(found))
     left.set(xlabel=length([one], "rise per period v"), ylabel="I(v)")
     if not known.any() and not any(np.isfinite(curve.rate).any() for curve in found.curves):

@@ -11,10 +11,11 @@ from particles.measures.large_deviation import (
     rate_function,
     usual_edges,
 )
+from particles.measures.moments import Estimate, WindowMoments, window_moments
 from particles.measures.packing import area_below, area_in_quadrant, fraction_in_cells, fraction_in_strips
 from particles.measures.profiles import Profile, coordination_in_strips, mean_in_strips
 from particles.measures.resampling import Resampling, checked_sequences
-from particles.measures.strobe import Portrait, Strobe, portrait, strobe
+from particles.measures.strobe import Portrait, Strobe, portrait, quietest_phase, strobe
 from particles.measures.symmetry import Symmetry, SymmetryPoints, limit_of_slope, symmetry
 from particles.measures.temperature import MovingGrains, Temperature, granular_temperature
 
@@ -22,6 +23,7 @@ __all__ = [
     "Cells",
     "Convection",
     "Cumulants",
+    "Estimate",
     "Extrapolated",
     "MovingGrains",
     "Portrait",
@@ -32,6 +34,7 @@ __all__ = [
     "Symmetry",
     "SymmetryPoints",
     "Temperature",
+    "WindowMoments",
     "area_below",
     "area_in_quadrant",
     "checked_sequences",
@@ -45,8 +48,10 @@ __all__ = [
     "limit_of_slope",
     "mean_in_strips",
     "portrait",
+    "quietest_phase",
     "rate_function",
     "strobe",
     "symmetry",
     "usual_edges",
+    "window_moments",
 ]

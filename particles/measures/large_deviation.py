@@ -130,7 +130,8 @@ def extrapolated(sampling: Resampling, curves: Sequence[RateFunction]) -> Extrap
         deviations = np.array([order[k].resampled[:, b] for k in known])
         half[b] = sampling.half_width((take @ deviations)[:, None])[0]
         apart = sampling.half_width((deviations[-1] - deviations[-2])[:, None])[0]
-        gap[b] = abs(rates[known[-1], b] - rates[known[-2], b]) / apart
+        # no width: the bin of the mean of both lengths, though not of a third
+        gap[b] = abs(rates[known[-1], b] - rates[known[-2], b]) / apart if apart > 0.0 else 0.0
     return Extrapolated(order[0].v, rate, half, gap)
 
 

@@ -1,4 +1,4 @@
-"""Windows over correlated sequences, and error bars of means over them by resampling moving blocks."""
+"""Windows over correlated sequences, and error bars of means over them by resampling blocks or whole sequences."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -28,6 +28,10 @@ class Resampling:
     increments over that length, stay within blocks. The same draws serve every quantity: differences between windows
     of different lengths keep their correlation.
 
+    Of many sequences whole ones may be drawn instead (the bootstrap of clusters): right however long increments
+    remember, and where sequences differ among themselves. Sequences without room for a block, or of whole ones for two
+    windows side by side, do not count.
+
     Parameters
     ----------
     sequences : tuple of (n,)
@@ -36,6 +40,8 @@ class Resampling:
         Periods of the longest window that will be asked for.
     block : int, optional
         Begins of windows per block; give more than the default where increments remember longer than that.
+    whole : bool
+        Draw whole sequences.
     resamples : int
     level : float
         Share of cases in which the true value should lie within the half widths.
@@ -44,12 +50,13 @@ class Resampling:
     Raises
     ------
     ParticleError
-        If the sequences hold fewer than `FEWEST_BLOCKS` blocks.
+        If the sequences hold fewer than `FEWEST_BLOCKS` blocks, or are fewer if drawn whole.
     """
 
     sequences: tuple[Floats, ...]
     longest: int
     block: int | None = None
+    whole: bool = False
     resamples: int = 400
     level: float = 0.95
     seed: int = 1
@@ -59,6 +66,11 @@ class Resampling:
         require("resamples", self.resamples, at_least=20)
         if not 0.0 < self.level < 1.0:
             raise ParticleError(f"level = {self.level:g} must lie between 0 and 1")
+        if self.whole and self.blocks < FEWEST_BLOCKS:
+            raise ParticleError(
+                f"{self.blocks} of {len(self.sequences)} sequences hold two windows of {self.longest} periods; error "
+                f"bars from whole sequences need {FEWEST_BLOCKS}: take shorter windows, longer runs or more samples"
+            )
         if self.blocks < FEWEST_BLOCKS:
             held = sum(len(sequence) for sequence in self.sequences)
             raise ParticleError(
@@ -69,7 +81,9 @@ class Resampling:
 
     @property
     def length(self) -> int:
-        """Windows per block."""
+        """Windows per block; the fewest of a whole sequence that counts."""
+        if self.whole:
+            return self.longest + 1
         return BLOCK_PER_WINDOW * self.longest if self.block is None else self.block
 
     @property
@@ -80,7 +94,9 @@ class Resampling:
 
     @property
     def blocks(self) -> int:
-        """Blocks that lie side by side."""
+        """Blocks that lie side by side, or sequences to be drawn whole."""
+        if self.whole:
+            return sum(count > 0 for count in self._held)
         return sum(self._held) // self.length
 
     def sums(self, periods: int) -> list[Floats]:
@@ -93,15 +109,17 @@ class Resampling:
 
     def means(self, periods: int, quantity: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
         """Mean of a quantity of window sums, (n,) to (n, k), over all windows: (k,), and resampled (resamples, k)."""
-        total, number, of_blocks = 0.0, 0, []
+        total, number, of_blocks, sizes = 0.0, 0, [], []
         for sums in self.sums(periods):
             values = quantity(sums)
             total, number = total + values.sum(axis=0), number + len(values)
+            length = len(values) if self.whole else self.length
             running = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values, axis=0)])
-            of_blocks.append((running[self.length :] - running[: -self.length]) / self.length)
-        drawn = np.concatenate(of_blocks)
+            of_blocks.append(running[length:] - running[:-length])
+            sizes += [length] * len(of_blocks[-1])
+        drawn, size = np.concatenate(of_blocks), np.array(sizes)
         places = np.random.default_rng(self.seed).integers(len(drawn), size=(self.resamples, self.blocks))
-        return total / number, np.array([drawn[place].mean(axis=0) for place in places])
+        return total / number, np.array([drawn[place].sum(axis=0) / size[place].sum() for place in places])
 
     def half_width(self, resampled: Floats) -> Floats:
         """Half width of the interval of the level, from resampled values (resamples, k): (k,).

@@ -1,6 +1,7 @@
 """One look per period of the shaking: heights at a phase, rises from one to the next, the portrait over the phase."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -54,6 +55,25 @@ def strobe(time: Floats, value: Floats, *, period: float, start: float = 0.0, ph
     at = start + (np.arange(first, last + 1) + phase) * period
     found = np.interp(at, time, value)
     return Strobe(at, found, np.diff(found))
+
+
+def quietest_phase(looks: Sequence[Sequence[Floats]]) -> int:
+    """The phase at which single rises spread least.
+
+    What a bed does within its period, or in two, is no rise, but is part of every look; it fades as 1/n in windows of n
+    periods, the sooner the less of it there is. The limit of long windows is the same at every phase.
+
+    Parameters
+    ----------
+    looks : sequence of sequence of (n,)
+        For each phase, the rises of each sample [m].
+
+    Returns
+    -------
+    int
+        Index of the phase; the first of equal ones.
+    """
+    return int(np.argmin([np.concatenate(list(rises)).var() for rises in looks]))
 
 
 class Portrait(NamedTuple):

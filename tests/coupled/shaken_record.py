@@ -1,6 +1,7 @@
 """Folders of shaken runs made by hand: an intruder that rises as told among grains that go round in two rolls."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -52,8 +53,19 @@ def floor_at(time: np.ndarray) -> np.ndarray:
     return np.where(np.asarray(time) > START, AMPLITUDE * (1.0 - np.cos(turned)), 0.0)
 
 
-def make(folder: Path, increments: np.ndarray, *, seed: int = 1, frames: int = 6, periods_per_frame: int = 2) -> Path:
-    """Write a run whose intruder goes up by `increments` (n,), one per period, on top of the floor's motion."""
+def make(
+    folder: Path,
+    increments: np.ndarray,
+    *,
+    seed: int = 1,
+    frames: int = 6,
+    periods_per_frame: int = 2,
+    swing: Callable[[np.ndarray], np.ndarray] = np.zeros_like,
+) -> Path:
+    """Write a run whose intruder goes up by `increments` (n,), one per period, on top of the floor's motion.
+
+    `swing` is added, a height at times in periods since the shaking began.
+    """
     folder.mkdir(parents=True)
     places = np.column_stack(
         [
@@ -66,7 +78,7 @@ def make(folder: Path, increments: np.ndarray, *, seed: int = 1, frames: int = 6
     heights = 2.0 + np.concatenate([[0.0], np.cumsum(increments)])
     history = History(folder / "history.csv")
     time = np.arange(round(duration / PERIOD * ROWS) + 1) * PERIOD / ROWS
-    level = np.interp(time, START + PERIOD * np.arange(len(heights)), heights)
+    level = np.interp(time, START + PERIOD * np.arange(len(heights)), heights) + swing((time - START) / PERIOD)
     for t, y, floor in zip(time, level, floor_at(time), strict=True):
         row = {"time [s]": t, "intruder_x [m]": 4.0, "intruder_y [m]": y + floor, "intruder_vx [m/s]": 0.0}
         history.write(row | {"intruder_vy [m/s]": 0.0, "floor_y [m]": floor})

@@ -139,10 +139,40 @@ def test_refusals(tmp_path):
     assert "holds 5 periods, none of them from 7 to the end" in one.notes[0]
 
 
+def test_many_samples_are_drawn_whole_at_the_quietest_phase(tmp_path):
+    """Samples rise at rates of their own on a swing of two periods: their spread grows with n, the swing fades."""
+    rng, own = np.random.default_rng(5), 0.02
+    for seed in range(1, 25):
+        rises = 0.1 + own * rng.standard_normal() + 0.02 * rng.standard_normal(40)
+        make(tmp_path / "all" / f"seed_{seed}", rises, seed=seed, frames=0, swing=lambda p: 0.5 * np.cos(np.pi * p))
+    (one,) = find([tmp_path / "all"], Periods(phase=None))
+    (rise,) = one.rises
+    assert rise.phase == 0.5  # where the swing of two periods goes through zero at every look
+    found = rise.deviations
+    assert found.whole and found.lengths == (1, 2, 4, 8, 16)
+    grown = found.moments[-1].variance
+    # 0.02^2 (1 + 16): half a look is in each end of a window, which leaves 1 - 1/(2 n) of the noise
+    assert abs(grown.value - 0.02**2 * (16.0 + 1.0)) < grown.half_width
+    # that of 24 means; blocks within samples would take each for several
+    assert found.moments[0].mean.half_width == pytest.approx(rise.rate.half_width, rel=0.15)
+    (swung,) = find([tmp_path / "all"], Periods())[0].rises
+    assert swung.deviations.moments[0].variance.value == pytest.approx(1.0, rel=0.02)  # up and down by 1, in turns
+    assert [curve.periods for curve in swung.deviations.curves] == [2, 4, 8, 16]  # no single rise is near the mean
+    assert swung.rate.mean == pytest.approx(rise.rate.mean, abs=2.0 * 0.5 / 40)
+    _, written = measure([tmp_path / "all"], out=tmp_path / "out", periods=Periods(phase=None))
+    assert tmp_path / "out" / "windows.csv" in written
+    (numbers,) = json.loads((tmp_path / "out" / "measures.json").read_text())
+    told = numbers["intruders"][0]
+    assert (told["phase"], told["resampled"], len(told["moments"])) == (0.5, "samples", 5)
+
+
 def test_the_command_tells_means_and_notes(ensemble, tmp_path):
     said = CliRunner().invoke(app, ["measure", str(ensemble), "--out", str(tmp_path / "out"), "--first", "20"])
     assert said.exit_code == 0, said.output
     assert "intruder: rise per period" in said.output and "4 samples" in said.output
     assert "convection" in said.output
+    for phase in ("1.0", "loud"):
+        wrong = CliRunner().invoke(app, ["measure", str(ensemble), "--phase", phase])
+        assert isinstance(wrong.exception, LeitoError) and f"--phase {phase} must be a number" in str(wrong.exception)
     wrong = CliRunner().invoke(app, ["measure", str(ensemble), "--first", "20", "--last", "10"])
     assert isinstance(wrong.exception, LeitoError) and "--last 10 must be greater" in str(wrong.exception)

@@ -14,6 +14,7 @@ from sequences import MEAN, SEQUENCES, UP, chain, chain_cumulant, gaussian, walk
 
 from particles import ParticleError
 from particles.measures import (
+    RateFunction,
     Resampling,
     checked_sequences,
     cumulants,
@@ -98,6 +99,21 @@ def test_windows_are_extrapolated_to_the_limit():
         plain.append(np.abs(curves[0].rate[[2, 6]] - truth) <= curves[0].half_width[[2, 6]])
     assert covered(within).min() > LEAST, covered(within)
     assert covered(plain).min() < 0.5  # without it the shortest windows are wrong for sure
+
+
+def test_a_mean_that_changes_bins_with_the_length_leaves_no_gap():
+    """Single periods of a record that drifts have their mean in another bin than longer windows."""
+    sampling = Resampling(sequences=(gaussian(np.random.default_rng(10), 2000),), longest=4)
+    noise = np.random.default_rng(11).standard_normal((sampling.resamples, 1))
+    curves = [
+        RateFunction(
+            n, np.zeros(1), np.full(1, 0.02 * (n == 1)), np.full(1, 0.05 * (n == 1)), np.ones(1, int), deviation
+        )
+        for n, deviation in ((1, 0.025 * noise), (2, 0.0 * noise), (4, 0.0 * noise))
+    ]
+    found = extrapolated(sampling, curves)
+    assert found.gap[0] == 0.0
+    assert abs(found.rate[0]) < 1e-6  # the two lengths that know it to be zero outweigh the third
 
 
 def test_gaussian_curves_of_all_windows_are_one():
