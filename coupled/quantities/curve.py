@@ -64,6 +64,26 @@ class Curve:
         value = np.concatenate([[self.at(start)], self.value[inside], [self.at(end)]])
         return Curve(name=self.name, time=time, value=value)
 
+    def first(self, over: float) -> Curve:
+        """The part of a length [s] from the first row on."""
+        return self.between(float(self.time[0]), float(self.time[0]) + over)
+
+    def last(self, over: float) -> Curve:
+        """The part of a length [s] up to the last row."""
+        return self.between(float(self.time[-1]) - over, None)
+
+    def require_length(self, least: float) -> None:
+        """Demand that the rows are at least so long [s].
+
+        Raises
+        ------
+        QuantityError
+            If they are shorter.
+        """
+        first, last = float(self.time[0]), float(self.time[-1])
+        if last - first < least - self._late:
+            raise QuantityError(f"the window from {first:g} to {last:g} s is shorter than {least:g} s: run it longer")
+
     def mean(self) -> float:
         """Mean over time, by the trapezoidal rule."""
         return float(trapezoid(self.value, self.time) / (self.time[-1] - self.time[0]))
@@ -86,8 +106,12 @@ class Curve:
         share = 0.0 if step == 0.0 else -beyond[k] / step
         return float(self.time[k] + share * (self.time[k + 1] - self.time[k]))
 
+    @property
+    def _late(self) -> float:
+        """How far [s] a time may lie outside the rows."""
+        return LATE * float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.0
+
     def _require_inside(self, time: float) -> None:
         first, last = float(self.time[0]), float(self.time[-1])
-        margin = LATE * float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.0
-        if not first - margin <= time <= last + margin:
+        if not first - self._late <= time <= last + self._late:
             raise QuantityError(f"t = {time:g} s is outside the run, whose rows go from {first:g} to {last:g} s")

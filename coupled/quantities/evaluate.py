@@ -81,6 +81,12 @@ def _(quantity: ColumnValue, folder: Path) -> float:
 @_value.register
 def _(quantity: ColumnOverTime, folder: Path) -> float:
     part = _curve(folder, quantity.column).between(quantity.start, quantity.end)
+    over = _over(quantity, folder)
+    if quantity.kind in ("drop", "rise"):
+        return (-1.0 if quantity.kind == "drop" else 1.0) * _gain(part, over)
+    if over is not None:
+        part.require_length(over)
+        part = part.last(over)
     match quantity.kind:
         case "mean":
             return part.mean()
@@ -88,10 +94,6 @@ def _(quantity: ColumnOverTime, folder: Path) -> float:
             return float(part.value.min())
         case "max":
             return float(part.value.max())
-        case "drop":
-            return float(part.value[0] - part.value[-1])
-        case "rise":
-            return float(part.value[-1] - part.value[0])
         case "frequency":
             return frequency_of(part.time, part.value, part.name)
 
@@ -130,6 +132,23 @@ def _(quantity: Packing, folder: Path) -> float:
         columns=1, rows=1, period=_period(scene),
     )  # fmt: skip
     return float(fraction_in_cells(*_free_grains(folder), rectangle)[0, 0])
+
+
+def _over(quantity: ColumnOverTime, folder: Path) -> float | None:
+    """Length of the ends of a window that count [s], or None."""
+    if quantity.over_periods is None:
+        return quantity.over
+    scene = load_scene(folder / SCENE)
+    assert scene.shaking is not None, "the rules of the scene demand it"
+    return quantity.over_periods * scene.shaking.period_with(scene.time.least_step)
+
+
+def _gain(part: Curve, over: float | None) -> float:
+    """Value at the end of a window minus that at its start, or the same of means over a length [s]."""
+    if over is None:
+        return float(part.value[-1] - part.value[0])
+    part.require_length(2.0 * over)
+    return part.last(over).mean() - part.first(over).mean()
 
 
 def _curve(folder: Path, column: str) -> Curve:

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, Tag
 
-from coupled.scene.types import NonNegative, Number, Positive, Table, by_kind
+from coupled.scene.types import Count, NonNegative, Number, Positive, Table, by_kind
 
 
 class _Quantity(Table):
@@ -31,7 +31,11 @@ class ColumnValue(_Quantity):
 
 
 class ColumnOverTime(_Quantity):
-    """A column over a window of time: its mean, least or largest value, drop or rise, frequency."""
+    """A column over a window of time: its mean, least or largest value, drop or rise, frequency.
+
+    `over` counts from the ends of the window, wherever a run that is made shorter or longer has them: of a drop or rise
+    the means over so long at both ends are compared, of anything else the last part of the window is looked at.
+    """
 
     beside: ClassVar[str] = ' together with a kind of "mean", "min", "max", "drop", "rise" or "frequency"'
 
@@ -39,6 +43,12 @@ class ColumnOverTime(_Quantity):
     column: str = Field(description="column of history.csv")
     start: NonNegative = Field(0.0, description="start of the window [s]")
     end: Positive | None = Field(None, description="end of the window [s]; absent: the end of the run")
+    over: Positive | None = Field(
+        None,
+        description="drop, rise: length of the means at both ends that are compared [s], absent: of the moments there; "
+        "others: length of the last part of the window that counts [s], absent: all of it",
+    )
+    over_periods: Count | None = Field(None, description="over in periods of [shaking], instead of over")
 
 
 class ColumnWhen(_Quantity):

@@ -36,6 +36,8 @@ def check_quantities(scene: Scene) -> None:
             _check_place(scene, quantity, key)
         else:
             _check_columns(quantity, key, columns)
+            if isinstance(quantity, ColumnOverTime):
+                _check_window(scene, quantity, key)
 
 
 def _check_columns(quantity: Quantity, key: str, columns: tuple[str, ...]) -> None:
@@ -43,13 +45,24 @@ def _check_columns(quantity: Quantity, key: str, columns: tuple[str, ...]) -> No
         column = getattr(quantity, name, None)
         if column is not None and column not in columns:
             raise refusal(f"{key}.{name}", column, f"is no column that this scene writes; {nearest(column, columns)}")
-    if isinstance(quantity, ColumnOverTime) and quantity.end is not None and quantity.end <= quantity.start:
-        raise refusal(f"{key}.end", quantity.end, f"is not after start = {quantity.start:g} s; give a later time")
     if isinstance(quantity, ColumnWhen):
         if quantity.reaches is None and quantity.changes_by is None:
             raise missing(f"{key}.reaches", f"say which value of {quantity.other}, or changes_by against its start")
         if quantity.reaches is not None and quantity.changes_by is not None:
             raise refusal(f"{key}.changes_by", quantity.changes_by, "is given together with reaches; keep one")
+
+
+def _check_window(scene: Scene, quantity: ColumnOverTime, key: str) -> None:
+    if quantity.end is not None and quantity.end <= quantity.start:
+        raise refusal(f"{key}.end", quantity.end, f"is not after start = {quantity.start:g} s; give a later time")
+    if quantity.over_periods is None:
+        return
+    if quantity.over is not None:
+        raise refusal(f"{key}.over_periods", quantity.over_periods, "is given together with over; keep one")
+    if scene.shaking is None:
+        raise refusal(
+            f"{key}.over_periods", quantity.over_periods, "counts periods of [shaking], which is not there; give over"
+        )
 
 
 def _check_place(scene: Scene, quantity: Surface | Packing, key: str) -> None:
