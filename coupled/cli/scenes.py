@@ -13,13 +13,14 @@ from coupled.cli.speech import print_table
 def list_scenes() -> None:
     """List the scenes that ship."""
     from coupled.scene import load_scene, shipping_scenes
+    from coupled.scene.units import in_units
 
     rows = []
     for name, path in shipping_scenes().items():
         scene = load_scene(path)
         grains = str(scene.first_grains.count) if scene.first_grains is not None else "-"
         structure = scene.structure.kind if scene.structure is not None else "-"
-        rows.append((name, grains, structure, f"{scene.time.duration:g} s", scene.title))
+        rows.append((name, grains, structure, in_units(f"{scene.time.duration:g} s", scene.units), scene.title))
     print_table(("scene", "grains", "structure", "duration", "title"), rows)
 
 

@@ -10,6 +10,7 @@ from coupled.errors import LeitoError
 from coupled.measuring.rises import Periods, Rise, intruder_names, rise_of
 from coupled.measuring.samples import Group, groups_of
 from coupled.measuring.states import Profiles, Rolls, profiles_of, rolls_of
+from coupled.scene.units import in_units
 from particles import ParticleError
 
 
@@ -61,4 +62,5 @@ def _find_group(group: Group, periods: Periods) -> Findings:
         for rise in rises
         if rise.deviations.lacks
     ]
-    return Findings(group=group, rises=tuple(rises), profiles=profiles, rolls=rolls, notes=tuple(notes))
+    told = tuple(in_units(note, first.scene.get("units", "SI")) for note in notes)
+    return Findings(group=group, rises=tuple(rises), profiles=profiles, rolls=rolls, notes=told)

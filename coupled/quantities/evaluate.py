@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from functools import singledispatch
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from coupled.quantities.frequency import frequency_of
 from coupled.quantities.surface import mean_height, slope_angle
 from coupled.scene import Scene, load_scene
 from coupled.scene.quantities import ColumnOverTime, ColumnValue, ColumnWhen, Packing, Quantity, Surface
+from coupled.scene.units import in_units
 from particles.measures import Cells, fraction_in_cells
 
 SCENE, SUMMARY = "scene.toml", "summary.json"
@@ -48,10 +50,17 @@ def _known(quantity: Quantity, folder: Path) -> float:
     try:
         value = _value(quantity, folder)
     except (QuantityError, OSError) as error:
-        raise QuantityError(f"{quantity.name} of {folder} is not known: {error}") from None
+        why = in_units(str(error), _units(folder))
+        raise QuantityError(f"{quantity.name} of {folder} is not known: {why}") from None
     if not math.isfinite(value):
         raise QuantityError(f"{quantity.name} of {folder} is not known: its value is {value}")
     return value
+
+
+def _units(folder: Path) -> str:
+    """The key `units` of the scene in a folder."""
+    path = folder / SCENE
+    return str(tomllib.loads(path.read_text()).get("units", "SI")) if path.exists() else "SI"
 
 
 def known_of(scene: Scene, folder: Path) -> tuple[dict[str, float | None], list[str]]:

@@ -23,10 +23,12 @@ from coupled.report.paired import measured_shares
 from coupled.report.preset import preset_rows
 from coupled.report.shares import Trial
 from coupled.scene import Scene, SettledGrains, Time
+from coupled.scene.units import in_units, told_in
 from coupled.step import StepLimits, limits_of, with_step
 from particles.timestep import SOURCE_FACTOR
 
 Row = tuple[str, str, str]
+COST = "cost"  # section whose seconds are those of a clock
 TRIED = 50  # steps timed for the estimate
 SETTLED_OVER_LOOSE = 2.3  # cost of a step of settled grains over that of loose ones, as `make bench` measures
 BYTES_PER_CONTACT = 60  # slot, history and dashpots of one listed pair
@@ -44,6 +46,12 @@ def check_scene(scene: Scene, *, measure: bool = False) -> list[Row]:
     -------
     Rows (section, quantity, value).
     """
+    with told_in(scene.units):
+        rows = _rows(scene, measure)
+    return [row if row[0] == COST else (*row[:2], in_units(row[2], scene.units)) for row in rows]
+
+
+def _rows(scene: Scene, measure: bool) -> list[Row]:
     asked, scene = scene, with_step(scene)
     settled = _settled_bed(scene)
     threads = max(1, (os.cpu_count() or 1) // MPI.COMM_WORLD.size)
@@ -170,14 +178,14 @@ def _cost_rows(scene: Scene, built: Built, trial: Trial) -> list[Row]:
     model, per_step = built.model, trial.whole
     total = math.ceil(scene.time.duration / model.window)
     rows = [
-        ("cost", "steps", f"{total}"),
-        ("cost", "time per step", f"{1e6 * per_step:.0f} us"),
-        ("cost", "estimated time", spoken(per_step * total)),
-        ("cost", "memory of the state", f"{_state_bytes(model) / 1e6:.1f} MB"),
+        (COST, "steps", f"{total}"),
+        (COST, "time per step", f"{1e6 * per_step:.0f} us"),
+        (COST, "estimated time", spoken(per_step * total)),
+        (COST, "memory of the state", f"{_state_bytes(model) / 1e6:.1f} MB"),
     ]
     if scene.bed is not None:
         rows.append(
-            ("cost", "and, once, to settle its bed", spoken(per_step * scene.bed.time.duration / scene.bed.time.step))
+            (COST, "and, once, to settle its bed", spoken(per_step * scene.bed.time.duration / scene.bed.time.step))
         )
     return rows
 

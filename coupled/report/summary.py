@@ -131,7 +131,7 @@ def tell(summary: dict[str, Any], pictures: list[Path], folder: Path, scene: Sce
         )
     if summary["moment_dropped_share"]:
         lines.append(
-            f"  moment dropped           {summary['moment_dropped']:12.2e} N m s/m, "
+            f"  moment dropped           {summary['moment_dropped']:12.2e}{shown.after('N m s/m')}, "
             f"{summary['moment_dropped_share']:.2g} of that of the forces; interface.couple = true keeps it"
         )
     if summary["free_grains"]:

@@ -22,6 +22,7 @@ from coupled.report import cautions
 from coupled.running.observe import Observation, observe
 from coupled.running.ranks import root_alone
 from coupled.running.restep import FORMER_STEP, STEP
+from coupled.scene.units import in_units
 from structure import solver_options
 
 PEAKS = (
@@ -177,7 +178,7 @@ class Record:
 
     def say(self, sentences: list[str]) -> None:
         """Notes to the user, kept in the log."""
-        for sentence in sentences:
+        for sentence in (in_units(each, self.built.scene.units) for each in sentences):
             self.log(f"note: {sentence}")
             if self.comm.rank == 0:
                 print(f"leito: note: {sentence}", file=sys.stderr, flush=True)

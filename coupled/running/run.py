@@ -36,6 +36,7 @@ from coupled.running.remedy import remedy
 from coupled.running.schedule import Events, Every
 from coupled.running.watchdog import Glance, Unstable, overturned_cell
 from coupled.scene import Scene
+from coupled.scene.units import in_units, told_in
 from coupled.step import with_step
 from particles.beds import rest_ratio
 
@@ -76,9 +77,10 @@ def run_scene(
     LeitoError and the errors of the rooms
         One sentence.
     """
-    scene = with_step(scene)
+    with told_in(scene.units):
+        scene = with_step(scene)
     threads = threads or max(1, (os.cpu_count() or 1) // comm.size)
-    with LeaveTogether(comm), _holding(comm, out, waits=False):
+    with LeaveTogether(comm), told_in(scene.units), _holding(comm, out, waits=False):
         way = Way(threads=threads, progress=progress, comm=comm, stop=stop, shared=shared or out.parent)
         return _run(scene, out, resume, overwrite, way)
 
@@ -141,7 +143,7 @@ class Run:
         record, model = self.record, self.model
         record.say(cautions.before(self.built))
         for sentence in [*preset_sentences(self.scene), *contact_sentences(self.scene)]:
-            record.log(sentence)
+            record.log(in_units(sentence, self.scene.units))
         record.write_provenance()
         wanted = progress and self.comm.rank == 0
         listening = Stop() if stop is None else contextlib.nullcontext(stop)
@@ -155,7 +157,7 @@ class Run:
                 while model.steps_done < self.last:
                     guard.advance(self.events.next(model.steps_done) - model.steps_done)
                     seen = self._look(guard, seen)
-                    bar.update(model.steps_done, f"t = {model.time:.3f} s")
+                    bar.update(model.steps_done, in_units(f"t = {model.time:.3f} s", self.scene.units))
                     if self.comm.allreduce(int(stop.asked), op=MPI.MAX):
                         self._interrupt(guard)
             except Failed as failed:
@@ -199,7 +201,7 @@ class Run:
         good = guard.keep()
         self.record.save(self.model.state(), good.glance.balance.entries)
         sentence = f"stopped at t = {self.model.time:g} s of {self.scene.time.duration:g} s; go on with --resume"
-        self.record.log(sentence)
+        self.record.log(in_units(sentence, self.scene.units))
         raise Interrupted(sentence)
 
     def _fail(self, failed: Failed) -> None:
@@ -214,7 +216,7 @@ class Run:
             f"t = {good.step * model.window:g} s, before that, is in {self.folder.file(BEFORE_FAILURE)}: --resume goes "
             f"on from there, also with --set time.step at a whole fraction of {self.scene.time.step:g} s"
         )
-        record.log(sentence)
+        record.log(in_units(sentence, self.scene.units))
         raise Unstable(sentence) from None
 
     def _finish(self, seen: Observation) -> None:

@@ -19,6 +19,7 @@ from coupled.scene.overrides import apply_override, parse_override
 from coupled.scene.preset import KNOBS, dotted, take_preset
 from coupled.scene.refusal import translate
 from coupled.scene.scene import Scene
+from coupled.scene.units import told_in
 
 INHERITED = ("units", "gravity", "box", "intruders", "contact", "damping")
 _BED, _ACCURACY = "bed", "accuracy"
@@ -61,6 +62,16 @@ Override = tuple[list[str], Any]
 
 def _load(path: Path, overrides: list[Override], above: tuple[Path, ...]) -> Scene:
     data = _read(path)
+    with told_in(_units(data, overrides)):
+        return _completed(path, data, overrides, above)
+
+
+def _units(data: dict[str, Any], overrides: list[Override]) -> str:
+    """The key `units`, as far as it can be told before the scene is checked."""
+    return str([data.get("units", "SI"), *(value for keys, value in overrides if keys == ["units"])][-1])
+
+
+def _completed(path: Path, data: dict[str, Any], overrides: list[Override], above: tuple[Path, ...]) -> Scene:
     try:
         for_bed = [(keys[1:], value) for keys, value in overrides if keys[0] == _BED and keys[1:]]
         own = [(keys, value) for keys, value in overrides if keys[0] != _BED or not keys[1:]]
