@@ -46,7 +46,7 @@ def box_walls(scene: Scene) -> list[dem.Wall]:
     walls = dem.box(scene.box.width, scene.box.height, scene.box.walls)
     shaken: tuple[str, ...] = ()
     if scene.shaking is not None:
-        shaken = scene.shaking.walls or scene.box.walls
+        shaken = scene.shaking.moved(scene.box)
     of = materials(scene).index
     return [replace(wall, material=of(wall.name), shaken=wall.name in shaken) for wall in walls]
 

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from particles.errors import ParticleError, require
-from particles.kernels.layout import ShakingNumbers
-from particles.kernels.shaking import displacement
-from particles.state import Grains
+from particles.kernels.layout import ShakingNumbers, WallArrays
+from particles.kernels.shaking import displacements
+from particles.state import Floats, Grains
 from particles.walls import Wall
 
 
@@ -72,9 +72,10 @@ class Shaking:
         length = math.hypot(*self.direction)
         return (self.direction[0] / length, self.direction[1] / length)
 
-    def displacement(self, time: float) -> float:
-        """Displacement [m] at a time [s]."""
-        return float(displacement(self.numbers(()), time))
+    def displacement(self, time: ArrayLike) -> Floats:
+        """Displacement [m] at times [s] of any shape."""
+        times = np.asarray(time, float)
+        return displacements(self.numbers(()), times.ravel()).reshape(times.shape)[()]
 
     def numbers(self, walls: Sequence[Wall], grains: Grains | None = None) -> ShakingNumbers:
         """What the kernels need, for the walls and the grains of a system."""
@@ -133,3 +134,17 @@ def shaking_of(shaking: Shaking | None, walls: Sequence[Wall], grains: Grains) -
     if not shaken and not shaking.bodies:
         raise ParticleError("shaking moves no wall: give Wall(..., shaken=True), or Shaking(..., bodies=...)")
     return shaking.numbers(walls, grains)
+
+
+def set_out(shaking: ShakingNumbers | None, walls: WallArrays, grains: Grains, time_step: float) -> None:
+    """Give what shakes the velocity with which it sets out at the time 0: that of a sine jumps there.
+
+    A difference of order 2 to one side, which is 0 for a start from rest.
+    """
+    if shaking is None:
+        return
+    near, far = displacements(shaking, time_step * np.array([1.0, 2.0]))
+    speed = (4.0 * near - far) / (2.0 * time_step)
+    walls.vx[shaking.moves], walls.vy[shaking.moves] = speed * shaking.along_x, speed * shaking.along_y
+    if shaking.carried is not None:
+        grains.vx[shaking.carried], grains.vy[shaking.carried] = speed * shaking.along_x, speed * shaking.along_y

@@ -26,7 +26,7 @@ from particles.look import ContactLook
 from particles.neighbours import LISTS_PER_SORT, ContactList, block_starts
 from particles.passing import Passage, deepest_passage
 from particles.periodic import checked_period
-from particles.shaking import Shaking, shaking_of
+from particles.shaking import Shaking, set_out, shaking_of
 from particles.snapshot import Snapshot
 from particles.state import PRECISIONS, Grains
 from particles.threads import use_threads
@@ -158,6 +158,7 @@ class ParticleSystem:
             return
         self._rebuild()
         arrays, laws = self._arrays(), self.contact.numbers()
+        set_out(self._shaken, self.list.walls, self.grains, self.time_step)
         stepping.forces(arrays, self.list.pairs, self.list.walls, self._facets(), *laws, None, self.ledger, 0.0)
         half, lead = 0.5 * self.time_step, self._lead()
         for block in range(len(self.blocks) - 2):
@@ -182,8 +183,7 @@ class ParticleSystem:
         step = stepping.advance_threaded if threaded else stepping.advance
         if threaded:
             numba.set_num_threads(self.threads)  # global: another system may have set its own
-        laws, damping, drifted = self.contact.numbers(), self._damping(), False
-        left = int(steps)
+        laws, damping, drifted, left = self.contact.numbers(), self._damping(), False, int(steps)
         while True:
             arrays, listed = self._arrays(), self.list
             done, drifted = step(

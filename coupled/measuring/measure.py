@@ -180,7 +180,8 @@ def _numbers(one: Findings) -> dict[str, Any]:
     record = one.group.records[0]
     numbers: dict[str, Any] = {"case": one.group.label, "title": record.title, "samples": len(one.group.records)}
     if record.shaken is not None:
-        numbers |= {"gamma": record.shaken.gamma, "period": record.shaken.period}
+        gamma = record.shaken.gamma
+        numbers |= {"gamma": gamma if np.isfinite(gamma) else None, "period": record.shaken.period}
     numbers["intruders"] = [_rise_numbers(rise) for rise in one.rises]
     if one.rolls is not None:
         numbers["roll"] = told(one.rolls.roll)

@@ -11,12 +11,14 @@ from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from coupled.errors import LeitoError
 from coupled.output import history
 from coupled.output.folder import SCENE
 from coupled.output.frames import read_frame
+from coupled.scene.grains import USUAL_WALLS
+from particles import Shaking
 
 Floats = NDArray[np.float64]
 Frame = tuple[float, dict[str, NDArray[Any]]]
@@ -25,12 +27,31 @@ FREE = -1  # body of a grain that no motion is prescribed for
 
 
 class Shaken(NamedTuple):
-    """What a record needs to know of the shaking: period and start [s], amplitude [m], Gamma [-]."""
+    """What a record needs to know of the shaking."""
 
-    period: float
-    start: float
-    amplitude: float
-    gamma: float
+    motion: Shaking
+    walls: tuple[str, ...]  # that move; the floor also where rows stand for it
+    gamma: float  # Gamma [-], infinite without gravity
+
+    @property
+    def period(self) -> float:
+        """[s]."""
+        return self.motion.period
+
+    @property
+    def start(self) -> float:
+        """When it begins [s]."""
+        return self.motion.start
+
+    @property
+    def periods(self) -> int | None:
+        """Number of periods with the whole amplitude or a rising one; None: it does not stop."""
+        stop = self.motion.stop
+        if stop is None:
+            return None
+        count = (stop - self.start) / self.period
+        # without a ramp the period in hand is finished; one part in 1e9 for the round-off of whole periods
+        return math.floor(count * (1.0 + 1e-9)) if self.motion.ramp > 0.0 else math.ceil(count * (1.0 - 1e-9))
 
 
 class Record:
@@ -52,6 +73,7 @@ class Record:
         self.folder = folder
         self.scene: dict[str, Any] = tomllib.loads((folder / SCENE).read_text())
         self.title = str(self.scene["title"])
+        self._frame_times: dict[str, Floats] = {}
 
     @cached_property
     def history(self) -> dict[str, Floats]:
@@ -85,7 +107,7 @@ class Record:
         axes = box.get("periodic", ())
         return (box["width"] if "x" in axes else None, box["height"] if "y" in axes else None)
 
-    @property
+    @cached_property
     def shaken(self) -> Shaken | None:
         """The shaking of the walls, if they shake."""
         table = self.scene.get("shaking")
@@ -95,8 +117,34 @@ class Record:
         period = table["period"] if "period" in table else table["period_steps"] * step
         turn = 2.0 * math.pi / period
         amplitude = table["amplitude"] if "amplitude" in table else table["gamma"] * self.gravity / turn**2
+        from_rest = table.get("waveform", "cosine") == "cosine"
+        motion = Shaking(
+            amplitude=amplitude,
+            period=period,
+            direction=(1.0, 0.0) if table.get("direction", "y") == "x" else (0.0, 1.0),
+            from_rest=from_rest,
+            start=table.get("start", 0.0),
+            stop=table.get("stop"),
+            ramp=table.get("ramp", 0.0 if from_rest else period),
+        )
         gamma = amplitude * turn**2 / self.gravity if self.gravity else math.inf
-        return Shaken(period, table.get("start", 0.0), amplitude, gamma)
+        standing = (self.box or {}).get("walls", USUAL_WALLS if self.box else ())
+        walls = tuple(table.get("walls") or standing)
+        if "floor" not in standing and any(row.get("shaken", True) for row in self.scene.get("rows", ())):
+            walls += ("floor",)
+        return Shaken(motion, walls, gamma)
+
+    def moved(self, time: ArrayLike, *walls: str) -> Floats:
+        """How far walls have gone at times (...) [s]: (..., 2) [m]; zero unless all of them shake."""
+        shaken, times = self.shaken, np.asarray(time, float)
+        if shaken is None or not set(walls) <= set(shaken.walls):
+            return np.zeros((*times.shape, 2))
+        return np.multiply.outer(shaken.motion.displacement(times), shaken.motion.along)
+
+    def box_moved(self, time: ArrayLike) -> Floats:
+        """How far the box has gone at times (...) [s]: (..., 2) [m], along with its sides and with its floor."""
+        along, up = self.moved(time, "left", "right")[..., 0], self.moved(time, "floor")[..., 1]
+        return np.stack([along, up], axis=-1)
 
     @property
     def intruders(self) -> int:
@@ -119,8 +167,10 @@ class Record:
 
     def frame_times(self, name: str) -> Floats:
         """Times of all frames [s]."""
-        times = []
-        for path in self.frame_paths(name):
-            with h5py.File(path, "r") as file:
-                times.append(float(file.attrs["time"]))
-        return np.array(times)
+        if name not in self._frame_times:
+            times = []
+            for path in self.frame_paths(name):
+                with h5py.File(path, "r") as file:
+                    times.append(float(file.attrs["time"]))
+            self._frame_times[name] = np.array(times)
+        return self._frame_times[name]

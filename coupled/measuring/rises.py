@@ -38,7 +38,7 @@ TILTS = 25
 
 @dataclass(frozen=True, kw_only=True)
 class Periods:
-    """Which periods of the shaking count, from 0 on; `last` None: to the end of the record.
+    """Which periods of the shaking count, from 0 on; `last` None: to the end of the shaking or of the record.
 
     Heights are read at the `phase` of each, 0 to below 1; None: at that of `PHASES` at which single rises spread least.
     """
@@ -46,6 +46,11 @@ class Periods:
     first: int = 0
     last: int | None = None
     phase: float | None = 0.0
+
+    def end(self, record: Record, phase: float = 0.0) -> int | None:
+        """The last period of a shaken record that counts, seen at a phase; None: the last one there is."""
+        shaken = record.shaken.periods
+        return self.last if self.last is not None or shaken is None else math.floor(shaken - phase)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +107,7 @@ class Rise:
 def height_over_floor(record: Record, name: str) -> Floats:
     """Height of an intruder over the floor at each row of the history [m]."""
     columns = record.history
-    return np.asarray(columns[f"{name}_y"] - columns.get("floor_y", 0.0))
+    return np.asarray(columns[f"{name}_y"] - record.box_moved(columns["time"])[:, 1])
 
 
 def intruder_names(record: Record) -> list[str]:
@@ -140,14 +145,13 @@ def _looks(record: Record, name: str, periods: Periods, phase: float) -> Strobe:
     """Heights of one intruder at a phase of the periods that count."""
     shaken, time = record.shaken, record.history["time"]
     seen = strobe(time, height_over_floor(record, name), period=shaken.period, start=shaken.start, phase=phase)
-    last = None if periods.last is None else periods.last + 1
-    kept = Strobe(
-        seen.time[periods.first : last], seen.value[periods.first : last], seen.rise[periods.first : periods.last]
-    )
+    end = periods.end(record, phase)
+    last = None if end is None else end + 1
+    kept = Strobe(seen.time[periods.first : last], seen.value[periods.first : last], seen.rise[periods.first : end])
     if not len(kept.rise):
         raise ParticleError(
             f"{record.folder} holds {len(seen.rise)} periods, none of them from {periods.first} to "
-            f"{'the end' if periods.last is None else periods.last}: choose others"
+            f"{'the end' if end is None else end}: choose others"
         )
     return kept
 

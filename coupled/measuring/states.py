@@ -59,11 +59,9 @@ def _own(record: Record, arrays: dict[str, np.ndarray]) -> np.ndarray:
     return own
 
 
-def _lift(record: Record, time: float) -> float:
-    """Displacement of the floor [m] at a time [s]."""
-    if "floor_y" not in record.history:
-        return 0.0
-    return float(np.interp(time, record.history["time"], record.history["floor_y"]))
+def _in_box(record: Record, time: float, arrays: dict[str, np.ndarray]) -> Floats:
+    """Places of the grains (n, 2) [m] as the shaken box sees them."""
+    return np.asarray(arrays["points"] - record.box_moved(time), float)
 
 
 def _counted(record: Record, periods: Periods) -> np.ndarray:
@@ -72,7 +70,8 @@ def _counted(record: Record, periods: Periods) -> np.ndarray:
     if shaken is None:
         return np.arange(len(times))[-1:]
     period = (times - shaken.start) / shaken.period
-    last = np.inf if periods.last is None else periods.last
+    last = periods.end(record)
+    last = np.inf if last is None else last
     return np.nonzero((period > periods.first - SAME_PHASE) & (period < last + SAME_PHASE))[0]
 
 
@@ -87,12 +86,29 @@ def _read(record: Record, numbers: np.ndarray) -> Iterator[Frame]:
 
 
 def _of_one_phase(record: Record, periods: Periods) -> np.ndarray:
-    """Those of the frames that count that share the phase of most: a run may end between two of them."""
+    """Those of the frames that count that share the phase of most, as far apart as most of these.
+
+    A run may end between two of them, and be prolonged from there.
+    """
     counted = _counted(record, periods)
-    phase = record.frame_times("grains")[counted] / record.shaken.period
-    off = phase[:, None] - phase
-    together = np.abs(off - np.round(off)) < SAME_PHASE
-    return counted[together[together.sum(axis=1).argmax()]] if len(counted) else counted
+    if len(counted) == 0:
+        return counted
+    turns = record.frame_times("grains")[counted] / record.shaken.period
+    phase = turns % 1.0
+    around = np.sort(np.concatenate([phase - 1.0, phase, phase + 1.0]))
+    alike = np.searchsorted(around, phase + SAME_PHASE) - np.searchsorted(around, phase - SAME_PHASE)
+    off = turns - phase[alike.argmax()]
+    nearest = np.argsort(np.abs(off - np.round(off)), kind="stable")
+    period, first = np.unique(np.round(off[nearest]).astype(np.int64), return_index=True)
+    one_each = nearest[first]
+    together = np.abs(off[one_each] - period) < SAME_PHASE
+    period, one_each = period[together], one_each[together]
+    if len(period) > 1:
+        apart = np.diff(period)
+        usual = int(np.bincount(apart).argmax())
+        even = (period - period[(apart == usual).argmax()]) % usual == 0
+        one_each = one_each[even]
+    return counted[one_each]
 
 
 def profiles_of(group: Group, periods: Periods) -> Profiles | None:
@@ -125,10 +141,10 @@ def _extent(record: Record, periods: Periods) -> tuple[float, float, float, floa
         own = _own(record, arrays)
         if not own.any():
             return None
-        x, y = arrays["points"][own].T
+        x, y = _in_box(record, time, arrays)[own].T
         r = arrays["radius"][own]
         left, right = min(left, float((x - r).min())), max(right, float((x + r).max()))
-        top, diameter = max(top, float(np.quantile(y + r, 0.995)) - _lift(record, time)), 2.0 * float(r.mean())
+        top, diameter = max(top, float(np.quantile(y + r, 0.995))), 2.0 * float(r.mean())
     if diameter is None:
         return None
     if record.box is not None:
@@ -151,13 +167,13 @@ def _profiles_of_run(
     energy, turning, freedoms, spins = (np.zeros(layers) for _ in range(4))
     frames = 0
     for time, arrays in frames_of(record, periods):
-        lift, free, own = _lift(record, time), arrays["body"] == FREE, _own(record, arrays)
-        y = arrays["points"][:, 1] - lift
+        free, own = arrays["body"] == FREE, _own(record, arrays)
+        x, y = _in_box(record, time, arrays).T
         packing += fraction_in_strips(y[free], np.asarray(arrays["radius"], float)[free], edges, width)
         held = coordination_in_strips(arrays["contacts"][own], y[own], edges)
         contacts += np.nan_to_num(held.mean) * held.count
         count += held.count
-        found = granular_temperature(_moving(arrays, own, lift), cells)
+        found = granular_temperature(_moving(x, y, arrays, own), cells)
         weight, spin_weight = np.maximum(found.count - 3.0, 0.0), np.maximum(found.count - 1.0, 0.0)
         energy += np.nansum(found.translational * weight, axis=1)
         turning += np.nansum(found.rotational * spin_weight, axis=1)
@@ -169,13 +185,12 @@ def _profiles_of_run(
     return dict(zip(PROFILES, values, strict=True)), frames
 
 
-def _moving(arrays: dict[str, np.ndarray], own: np.ndarray, lift: float) -> MovingGrains:
+def _moving(x: Floats, y: Floats, arrays: dict[str, np.ndarray], own: np.ndarray) -> MovingGrains:
     """Grains with masses over the mean one: equal densities, so that areas will do."""
-    x, y = np.array(arrays["points"][own], float).T
     vx, vy = np.asarray(arrays["velocity"][own][:, :2], float).T
     radius = np.asarray(arrays["radius"][own], float)
     mass = radius**2 / np.mean(radius**2)
-    return MovingGrains(x, y - lift, vx, vy, np.asarray(arrays["spin"][own], float), mass, 0.5 * mass * radius**2)
+    return MovingGrains(x[own], y[own], vx, vy, np.asarray(arrays["spin"][own], float), mass, 0.5 * mass * radius**2)
 
 
 def rolls_of(group: Group, periods: Periods) -> Rolls:
@@ -233,6 +248,4 @@ def periods_between_frames(record: Record, periods: Periods) -> int:
 
 def _places(record: Record, periods: Periods) -> Iterator[Floats]:
     for time, arrays in _read(record, _of_one_phase(record, periods)):
-        points = np.array(arrays["points"][_own(record, arrays)], float)
-        points[:, 1] -= _lift(record, time)
-        yield points
+        yield _in_box(record, time, arrays)[_own(record, arrays)]

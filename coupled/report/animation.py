@@ -13,6 +13,7 @@ from coupled.errors import LeitoError
 from coupled.measuring.record import FREE, Floats, Frame, Record
 from coupled.report.drawing import AbstractMovieWriter, Axes, FFMpegWriter, Line2D, PillowWriter, PolyCollection, plt
 from coupled.report.raster import Canvas
+from coupled.scene.grains import USUAL_WALLS
 
 Arrays = dict[str, np.ndarray]
 
@@ -108,8 +109,8 @@ def _film(record: Record, target: Path, writer: AbstractMovieWriter, every: int)
                 picture.set_data(canvas.image())
             if structure is not None:
                 cells.set_verts(_outlines(structure))
-            for line, home in walls:
-                line.set_ydata(np.array(home) + _floor(record, time))
+            for name, line, home in walls:
+                line.set_data(*(home + record.moved(time, name)).T)
             title.set_text(f"{said}\n{_clock(record, time)}")
             writer.grab_frame()
     plt.close(figure)
@@ -182,31 +183,24 @@ def _outlines(arrays: Arrays) -> np.ndarray:
     return (arrays["points"] + arrays["displacement"][:, :2])[corners]
 
 
-def _draw_walls(record: Record, axes: Axes) -> list[tuple[Line2D, list[float]]]:
-    """Floor, lid and sides of the box as lines, with their heights at home."""
+def _draw_walls(record: Record, axes: Axes) -> list[tuple[str, Line2D, Floats]]:
+    """Floor, lid and sides of the box by name, as lines with their ends (2, 2) at home [m]."""
     box = record.box
     if box is None:
         return []
     width, height = box["width"], box["height"]
     ends = {
-        "floor": ([0.0, width], [0.0, 0.0]),
-        "lid": ([0.0, width], [height, height]),
-        "left": ([0.0, 0.0], [0.0, height]),
-        "right": ([width, width], [0.0, height]),
+        "floor": [(0.0, 0.0), (width, 0.0)],
+        "lid": [(0.0, height), (width, height)],
+        "left": [(0.0, 0.0), (0.0, height)],
+        "right": [(width, 0.0), (width, height)],
     }
     lines = []
-    for name in box.get("walls", ("left", "right", "floor")):
-        x, y = ends[name]
-        (line,) = axes.plot(x, y, color="0.25", linewidth=1.4)
-        lines.append((line, y))
+    for name in box.get("walls", USUAL_WALLS):
+        home = np.array(ends[name])
+        (line,) = axes.plot(*home.T, color="0.25", linewidth=1.4)
+        lines.append((name, line, home))
     return lines
-
-
-def _floor(record: Record, time: float) -> float:
-    """Displacement of the walls [m], from the history."""
-    if "floor_y" not in record.history:
-        return 0.0
-    return float(np.interp(time, record.history["time"], record.history["floor_y"]))
 
 
 def _clock(record: Record, time: float) -> str:

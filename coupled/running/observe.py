@@ -93,8 +93,10 @@ def _followed_numbers(model: Model) -> dict[str, float]:
         of_grain = [float(array[at]) for array in (grains.x, grains.y, grains.vx, grains.vy)]
         numbers |= dict(zip(intruder_columns(k), of_grain, strict=True))
     if system.shaking is not None:
-        axis = "floor_x" if system.shaking.along[0] else "floor_y"
-        numbers[axis] = system.shaking.displacement(system.time)
+        floors = [wall.shaken for wall in system.walls if wall.name == "floor"]
+        floor = any(floors) if floors else bool(system.shaking.bodies)  # rows in its place
+        axis = "x" if system.shaking.along[0] else "y"
+        numbers[f"{'floor' if floor else 'walls'}_{axis}"] = float(system.shaking.displacement(system.time))
     return numbers
 
 

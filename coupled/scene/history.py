@@ -28,6 +28,8 @@ UNITS = {
     "highest_grain": "m",
     "floor_x": "m",
     "floor_y": "m",
+    "walls_x": "m",
+    "walls_y": "m",
     "ledger_error": "J/m",
     "ledger_relative_error": "-",
     "interface_residual": "J/m",
@@ -76,7 +78,7 @@ def history_columns(scene: Scene) -> tuple[str, ...]:
         names += _FREE_GRAINS
         names += [column for k in range(len(scene.intruders)) for column in intruder_columns(k)]
     if scene.shaking is not None:
-        names.append(f"floor_{scene.shaking.direction}")
+        names.append(f"{'floor' if _floor_shakes(scene) else 'walls'}_{scene.shaking.direction}")
     names += ["ledger_error", "ledger_relative_error"]
     if scene.interface is not None:
         names += _interface_columns(scene)
@@ -85,6 +87,14 @@ def history_columns(scene: Scene) -> tuple[str, ...]:
     if scene.structure is not None:
         names += [*_STRUCTURE_ENERGIES, *_scheme_columns(scene)]
     return tuple(names)
+
+
+def _floor_shakes(scene: Scene) -> bool:
+    """Whether the floor moves: the wall, or rows in its place."""
+    assert scene.shaking is not None
+    if scene.box is None or "floor" not in scene.box.walls:
+        return bool(scene.shaken_rows)
+    return "floor" in scene.shaking.moved(scene.box)
 
 
 def _interface_columns(scene: Scene) -> list[str]:

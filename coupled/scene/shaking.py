@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
-from coupled.scene.grains import Wall
+from coupled.scene.grains import Box, Wall
 from coupled.scene.types import Count, NonNegative, Positive, Table, Vector
 
 
@@ -39,6 +39,10 @@ class Shaking(Table):
         if isinstance(data, dict) and data.get("waveform", "cosine") == "cosine":
             return {"ramp": 0.0, **data}
         return data
+
+    def moved(self, box: Box) -> tuple[Wall, ...]:
+        """The walls that move: those named, or all of the box."""
+        return self.walls or box.walls
 
     def period_with(self, step: float) -> float:
         """The period [s] with a time step of the grains [s]."""

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from particles.kernels.jit import kernel
 
 
@@ -36,6 +38,15 @@ def motion(shaking, step, dt):
     before, here = displacement(shaking, (step - 1) * dt), displacement(shaking, step * dt)
     speed, next_speed = (here - before) / dt, (displacement(shaking, (step + 1) * dt) - here) / dt
     return here, speed, 0.5 * (next_speed - speed)
+
+
+@kernel
+def displacements(shaking, times):
+    """Displacements (n,) [m] at times (n,) [s]."""
+    found = np.empty(times.shape[0])
+    for k in range(times.shape[0]):
+        found[k] = displacement(shaking, times[k])
+    return found
 
 
 @kernel

@@ -6,15 +6,17 @@ import math
 
 import numpy as np
 import pytest
-from shaken_record import FINE, RADIUS, make
+from shaken_record import AMPLITUDE, FINE, PERIOD, RADIUS, START, floor_at, make
 from typer.testing import CliRunner
 
 from coupled.cli.app import app
 from coupled.errors import LeitoError
 from coupled.measuring.findings import find
 from coupled.measuring.measure import draw_run, measure
-from coupled.measuring.rises import Periods
+from coupled.measuring.record import Record
+from coupled.measuring.rises import Periods, height_over_floor
 from coupled.measuring.samples import groups_of
+from coupled.output.frames import Frames, read_frame
 
 MEAN, SPREAD = 0.004, 0.02
 
@@ -27,7 +29,7 @@ def ensemble(tmp_path_factory):
         make(folder / "slow" / f"seed_{seed}", MEAN + SPREAD * rng.standard_normal(240), seed=seed, frames=2)
     other = make(folder / "fast" / "seed_1", np.full(240, 0.05), frames=2)
     text = (other / "scene.toml").read_text()
-    (other / "scene.toml").write_text(text.replace("amplitude = 0.5", "amplitude = 0.6"))
+    (other / "scene.toml").write_text(text.replace("density = 1.0", "density = 1.1"))
     return folder
 
 
@@ -102,7 +104,7 @@ def test_tables_and_pictures(ensemble, tmp_path):
     last = [row for row in rows if row["case"] == "fast"][-1]
     assert float(last["height"]) == pytest.approx(14.0) and last["rise"] == ""
     numbers = {one["case"]: one for one in json.loads((tmp_path / "out" / "measures.json").read_text())}
-    assert numbers["fast"]["gamma"] == pytest.approx(0.6 * (2.0 * math.pi / 4.0) ** 2)
+    assert numbers["fast"]["gamma"] == pytest.approx(AMPLITUDE * (2.0 * math.pi / PERIOD) ** 2)
     assert numbers["slow"]["intruders"][0]["rise_per_period"]["samples"] == 4
     assert numbers["fast"]["intruders"][0]["rise_per_period"]["half_width"] is None
 
@@ -176,3 +178,50 @@ def test_the_command_tells_means_and_notes(ensemble, tmp_path):
         assert isinstance(wrong.exception, LeitoError) and f"--phase {phase} must be a number" in str(wrong.exception)
     wrong = CliRunner().invoke(app, ["measure", str(ensemble), "--first", "20", "--last", "10"])
     assert isinstance(wrong.exception, LeitoError) and "--last 10 must be greater" in str(wrong.exception)
+
+
+def test_walls_beside_a_floor_at_rest_do_not_lift_it(tmp_path):
+    still = make(tmp_path / "still", np.full(40, 0.05))
+    text = (
+        (still / "scene.toml").read_text().replace('walls = ["floor"]\nperiodic = ["x"]', 'walls = ["left", "floor"]')
+    )
+    (still / "scene.toml").write_text(text + 'walls = ["left"]\n')
+    record = Record(still)
+    # the rows have the floor's motion in the intruder's height, as if something else had lifted it: it stays in
+    np.testing.assert_allclose(height_over_floor(record, "intruder"), record.history["intruder_y"])
+    assert (record.moved(8.0, "floor") == 0.0).all() and record.moved(8.0, "left")[1] == 2.0 * AMPLITUDE
+
+
+def test_floor_is_where_the_shaking_says_between_rows_too(ensemble):
+    record = Record(ensemble / "slow" / "seed_1")
+    time = START + np.linspace(0.0, 2.0 * PERIOD, 31)
+    np.testing.assert_allclose(record.box_moved(time)[:, 1], floor_at(time), atol=1e-12)
+
+
+def test_rises_end_with_the_shaking(tmp_path):
+    ended = make(tmp_path / "ended", np.append(np.full(20, 0.05), np.zeros(20)), frames=15)
+    with open(ended / "scene.toml", "a") as file:
+        file.write(f"stop = {START + 19.5 * PERIOD}\n")  # the period in hand is finished
+    (found,) = find([ended], Periods())
+    (rise,) = found.rises
+    assert len(rise.samples[0].rise) == 20 and rise.rate.mean == pytest.approx(0.05, rel=1e-12)
+    assert found.profiles.frames == 11  # two periods apart, both ends counted
+    assert len(find([ended], Periods(last=40))[0].rises[0].samples[0].rise) == 40
+
+
+@pytest.mark.parametrize("more", [[3.0 * PERIOD, 5.0 * PERIOD], [4.0 * PERIOD + 0.001, 6.4 * PERIOD]])
+def test_frames_beside_the_usual_ones_do_not_hide_convection(tmp_path, more):
+    """The last frame of a run that was prolonged later, and frames that follow each other closely."""
+    run = make(tmp_path / "run", np.full(24, 0.05), frames=10)
+    (alone,) = find([run], Periods())
+    beside = Frames(run, "grains", keep_until=math.inf)
+    _, arrays = read_frame(run / "frames" / "grains.000000.h5")
+    points = arrays.pop("points")
+    for time in more:
+        beside.write(START + time, points + np.array([3.0, 0.0]), arrays)
+    # frames of a folder are in the order of their numbers: put the new ones where their time is
+    paths = sorted((run / "frames").glob("grains.*.h5"), key=lambda path: read_frame(path)[0])
+    for k, path in enumerate(paths):
+        path.rename(run / "frames" / f"grains.x{k:05d}.h5")
+    (found,) = find([run], Periods())
+    np.testing.assert_allclose(found.rolls.field.displacement, alone.rolls.field.displacement, atol=1e-12)

@@ -14,6 +14,7 @@ from same_run import assert_same_run
 from coupled.balance import take_balance
 from coupled.build import build
 from coupled.measuring.record import Record
+from coupled.measuring.rises import height_over_floor
 from coupled.output.history import History, read_history
 from coupled.running.run import run_scene
 from coupled.scene import Scene, load_scene
@@ -109,6 +110,18 @@ def test_history_follows_intruder_and_floor(tmp_path: Path) -> None:
     # work of the floor and the weights it lifts are in the ledger; what is missing is the integrator's
     assert seen["walls_work"][-1] > 1.0
     assert np.abs(seen["ledger_relative_error"]).max() < 0.02
+
+
+def test_history_names_what_moves(tmp_path: Path) -> None:
+    """A floor at rest under shaken sides has no displacement."""
+    walled = {"box.periodic": GONE, "intruders.0.x": 6.0, "shaking.walls": ["right", "left"]}
+    tables = changed(FEW, walled | {"time.duration": 3.0})
+    run = run_scene(Scene.model_validate(tables), out=tmp_path / "run", threads=1, progress=False)
+    seen = read_history(run / "history.csv")
+    assert "floor_y" not in seen and seen["walls_y"].max() > 0.5
+    record = Record(run)
+    np.testing.assert_array_equal(height_over_floor(record, "intruder"), seen["intruder_y"])
+    np.testing.assert_allclose(record.moved(seen["time"], "left")[:, 1], seen["walls_y"], atol=1e-12)
 
 
 def test_run_taken_up_in_the_middle_of_a_period_has_the_same_bits(tmp_path: Path) -> None:

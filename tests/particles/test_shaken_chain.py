@@ -92,6 +92,28 @@ def test_dashpots_see_the_present_velocity_of_the_floor_in_velocity_verlet() -> 
     np.testing.assert_allclose(orders(errors("leapfrog", c_n, exact, end)), 1.0, atol=0.1)
 
 
+def test_floor_that_sets_out_with_a_jump_costs_velocity_verlet_no_order() -> None:
+    """A sine without a ramp: dashpots see the velocity after the jump from the first step on."""
+    end, c_n, drive = 0.1 * PERIOD, 1.0, 2 * np.pi / PERIOD
+    amplitude = 0.02 * AMPLITUDE  # the jump swings the contacts by less than their overlap
+    motion = Shaking(amplitude=amplitude, period=PERIOD, from_rest=False)
+    squared = stiffness()
+    rate = np.zeros((2 * N + 2, 2 * N + 2))  # u, v, sin, cos
+    rate[:N, N : 2 * N] = np.eye(N)
+    rate[N : 2 * N, :N], rate[N : 2 * N, N : 2 * N] = -squared, -c_n / K_N * squared
+    rate[N, 2 * N], rate[N, 2 * N + 1] = amplitude * K_N / MASS, amplitude * drive * c_n / MASS
+    rate[2 * N, 2 * N + 1], rate[2 * N + 1, 2 * N] = drive, -drive
+    exact = (expm(rate * end) @ np.eye(2 * N + 2)[-1])[:N]
+    found = []
+    for steps in (500, 1000, 2000):
+        system = column(end / steps, motion, c_n=c_n, scheme="velocity_verlet")
+        (start,) = by_number(system, "y")
+        system.advance(steps)
+        assert system.look().count == N, "no contact has opened"
+        found.append(np.abs(by_number(system, "y")[0] - start - exact).max() / amplitude)
+    np.testing.assert_allclose(orders(np.array(found)), 2.0, atol=0.1)
+
+
 def test_work_of_the_floor_is_the_energy_of_the_chain() -> None:
     """Elastic: what the floor has done is what is stored, at every time to round-off, and that of the closed form."""
     system = column(1e-3, Shaking(amplitude=AMPLITUDE, period=PERIOD))
