@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +9,8 @@ from numpy.typing import NDArray
 
 import particles as dem
 from coupled.scene import Grains, Scene
-from coupled.scene.intruders import MIDDLE
 from coupled.scene.materials import intruder_materials, materials
+from coupled.scene.places import places_of
 from particles.beds import lattice
 
 Floats = NDArray[np.float64]
@@ -21,12 +20,11 @@ def laid_out(scene: Scene) -> dem.Grains:
     """The grains of a scene that lays them out itself, the intruders last."""
     table = scene.grains
     sizes = _sizes(table)
+    places = np.array(places_of(scene.intruders, table, scene.box) if scene.intruders else []).reshape(-1, 2)
     if table.layout == "list":
         rows = np.array([(*row, *(0.0,) * (5 - len(row))) for row in table.positions])
         radius = np.concatenate([np.full(count, size) for size, count in sizes])
-        places = _intruder_places(scene, float(rows[:, 1].min() + rows[:, 1].max()) / 2.0)
         return _with_intruders(scene, rows[:, :2], radius, places, rows[:, 2:])
-    places = _intruder_places(scene, _middle_of_lattice(scene))
     holes = [
         (x + shift, y, intruder.radius)
         for (x, y), intruder in zip(places, scene.intruders, strict=True)
@@ -79,25 +77,6 @@ def _sizes(table: Grains) -> list[tuple[float, int]]:
         else:
             sizes += [(float(r), 1) for r in draw.uniform(size.smallest, size.largest, size.count)]
     return sizes
-
-
-def _middle_of_lattice(scene: Scene) -> float:
-    """Half the height [m] of grains on a lattice and the intruders among them."""
-    table, width = scene.grains, scene.box.width
-    pitch = 2.0 * table.largest_radius * table.spacing
-    columns = max(int(width / pitch + 1e-9), 1)
-    taken = sum(math.pi * intruder.radius**2 for intruder in scene.intruders)
-    return 0.5 * (table.count * pitch / columns + taken / width)
-
-
-def _intruder_places(scene: Scene, middle: float) -> Floats:
-    """Centres (k, 2) [m] of the intruders; `middle` is the mean height of the grains."""
-    places = []
-    for intruder in scene.intruders:
-        x = 0.5 * scene.box.width if intruder.x == MIDDLE else intruder.x
-        y = max(middle, intruder.radius) if intruder.y == MIDDLE else intruder.y
-        places.append((x, y))
-    return np.array(places, float).reshape(-1, 2)
 
 
 def _shifts(scene: Scene) -> tuple[float, ...]:

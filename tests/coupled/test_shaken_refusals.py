@@ -49,6 +49,36 @@ BAD: dict[str, Case] = {
     "intruder too large": (SHAKEN, {"intruders.0.radius": 0.06}, "intruders.0.radius", ("larger than the box",)),
     "intruder of no density": (SHAKEN, {"intruders.0.density": GONE}, "intruders.0.density", ("missing",)),
     "intruders in one place": (SHAKEN, {"intruders.1.y": "middle"}, "intruders.1", ("overlaps intruders.0",)),
+    "intruder in the middle by word and by number": (
+        SHAKEN,
+        {"intruders.1.x": 0.05, "intruders.1.y": 0.02, "intruders.0.y": 0.021},
+        "intruders.1",
+        ("overlaps intruders.0, 0.001 m",),
+    ),
+    "intruders across the seam": (
+        PERIODIC,
+        {"intruders.0.x": 0.001, "intruders.1.x": 0.098, "intruders.0.y": 0.1},
+        "intruders.1",
+        ("overlaps intruders.0, 0.003 m",),
+    ),
+    "intruder in a grain of a list": (
+        SHAKEN,
+        {
+            "grains.sizes": [{"radius": 2e-3, "count": 2}],
+            "grains.layout": "list",
+            "grains.positions": [[0.05, 0.02], [0.05, 0.06]],
+            "intruders.1.y": 0.062,
+            "intruders.1.x": 0.051,
+        },
+        "intruders.1",
+        ("grains.positions.1",),
+    ),
+    "large intruder that leaves no place": (
+        SHAKEN,
+        {"intruders.0.radius": 0.06, "grains.sizes.0.count": 900},
+        "intruders.0.radius",
+        ("larger than the box",),
+    ),
     "intruder nowhere": (SHAKEN, {"intruders.0.x": "centre"}, "intruders.0.x", ("middle",)),
     "intruders without grains": (
         RIGID,

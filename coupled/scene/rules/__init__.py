@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from coupled.scene.rules.contact import check_contact
 from coupled.scene.rules.grains import check_grains
 from coupled.scene.rules.interface import check_interface, check_rows
-from coupled.scene.rules.intruders import check_intruders, check_periodic
+from coupled.scene.rules.intruders import check_intruder_sizes, check_intruders, check_periodic
 from coupled.scene.rules.quantities import check_quantities
 from coupled.scene.rules.shaking import check_shaking
 from coupled.scene.rules.stability import check_step
@@ -27,6 +27,7 @@ def check_rules(scene: Scene) -> None:
         At the first rule that is broken.
     """
     check_whole(scene)
+    check_intruder_sizes(scene)
     check_grains(scene)
     check_periodic(scene)
     check_intruders(scene)

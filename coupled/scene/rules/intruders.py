@@ -3,17 +3,31 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from coupled.scene.grains import ACROSS, SettledGrains
+from coupled.scene.grains import ACROSS, Box, Grains, SettledGrains
 from coupled.scene.intruders import MIDDLE
+from coupled.scene.places import places_of
 from coupled.scene.refusal import missing, refusal
 
 if TYPE_CHECKING:
     from coupled.scene.scene import Scene
 
 LEAST_RADII = 5.0  # in a period, `particles.periodic`
+
+
+def check_intruder_sizes(scene: Scene) -> None:
+    """Check that intruders are no larger than the box, before grains are sought a place beside them."""
+    box = scene.box
+    for index, intruder in enumerate(scene.intruders if box is not None else ()):
+        if 2.0 * intruder.radius > min(box.width, box.height):
+            raise refusal(
+                f"intruders.{index}.radius",
+                intruder.radius,
+                f"is larger than the box of {box.width:g} x {box.height:g} m; reduce it or enlarge the box",
+            )
 
 
 def check_intruders(scene: Scene) -> None:
@@ -32,12 +46,6 @@ def check_intruders(scene: Scene) -> None:
     for index, intruder in enumerate(scene.intruders):
         for axis, size in (("x", box.width), ("y", box.height)):
             value, margin = getattr(intruder, axis), 0.0 if axis in box.periodic else intruder.radius
-            if 2.0 * intruder.radius > size:
-                raise refusal(
-                    f"intruders.{index}.radius",
-                    intruder.radius,
-                    f"is larger than the box of {box.width:g} x {box.height:g} m; reduce it or enlarge the box",
-                )
             if value != MIDDLE and not margin <= value <= size - margin:
                 raise refusal(
                     f"intruders.{index}.{axis}",
@@ -48,14 +56,36 @@ def check_intruders(scene: Scene) -> None:
 
 
 def _check_apart(scene: Scene) -> None:
+    """Check that intruders overlap neither each other nor, in a list, other grains."""
+    grains, box = scene.grains, scene.box
+    assert isinstance(grains, Grains) and box is not None, "the rules before have seen to it"
+    places = places_of(scene.intruders, grains, box)
     for (i, a), (j, b) in combinations(enumerate(scene.intruders), 2):
-        apart = math.inf
-        if (a.x == MIDDLE) == (b.x == MIDDLE) and (a.y == MIDDLE) == (b.y == MIDDLE):
-            dx = 0.0 if a.x == MIDDLE else a.x - b.x
-            dy = 0.0 if a.y == MIDDLE else a.y - b.y
-            apart = math.hypot(dx, dy)
+        apart = _apart(places[i], places[j], box)
         if apart < a.radius + b.radius:
             raise refusal(f"intruders.{j}", {}, f"overlaps intruders.{i}, {apart:g} m away; give it another x or y")
+    if grains.layout != "list":
+        return
+    radii = [size.smallest for size in grains.sizes for _ in range(size.count)]
+    for j, b in enumerate(scene.intruders):
+        for i, (row, radius) in enumerate(zip(grains.positions, radii, strict=True)):
+            apart = _apart(row, places[j], box)
+            if apart < radius + b.radius:
+                raise refusal(
+                    f"intruders.{j}",
+                    {},
+                    f"overlaps the grain of grains.positions.{i}, {apart:g} m away; give it another x or y",
+                )
+
+
+def _apart(one: Sequence[float], other: Sequence[float], box: Box) -> float:
+    """Distance of two centres [m], to the nearest image."""
+    gaps = (one[0] - other[0], one[1] - other[1])
+    near = [
+        gap if length is None else gap - length * round(gap / length)
+        for gap, length in zip(gaps, box.period, strict=True)
+    ]
+    return math.hypot(*near)
 
 
 def check_periodic(scene: Scene) -> None:
