@@ -8,7 +8,7 @@ from pathlib import Path
 
 from coupled.campaign import Task
 from coupled.ensemble.grid import Combination, grid
-from coupled.errors import LeitoError
+from coupled.errors import LeitoError, SceneError
 from coupled.scene import load_scene
 from coupled.scene.chance import seed_key
 
@@ -49,7 +49,12 @@ def samples_of(
     found = []
     for combination in grid(vary, overrides):
         sets = [*overrides, *combination.overrides]
-        first = load_scene(scene, sets, accuracy=accuracy)
+        try:
+            first = load_scene(scene, sets, accuracy=accuracy)
+        except SceneError as error:
+            if not combination.values:
+                raise
+            raise LeitoError(f"--vary {' '.join(combination.overrides)}: {error}") from None
         place = out / combination.label if combination.values else out
         key = seed_key(first)
         if key is None:

@@ -49,7 +49,7 @@ def before(built: Built, limits: StepLimits | None = None) -> list[str]:
     if scene.structure is not None:
         said += unresolved_schedules(scene.structure.loads, built.model.window)
         said += _braked(built) + _walls_alone(scene)
-    return said + _resonance(built) + locking(scene)
+    return said + _resonance(built) + _never_shaken(scene) + locking(scene)
 
 
 def _resonance(built: Built) -> list[str]:
@@ -87,6 +87,16 @@ def _walls_alone(scene: Scene) -> list[str]:
     if scene.grains is not None or scene.box is None or not scene.box.walls:
         return []
     return ["box.walls hold free grains, and there are none: the structure goes through them"]
+
+
+def _never_shaken(scene: Scene) -> list[str]:
+    """A sentence on walls that would shake after the end of the run."""
+    if scene.shaking is None or scene.shaking.start < scene.time.duration:
+        return []
+    return [
+        f"shaking.start = {scene.shaking.start:g} is not before the end of the run, time.duration = "
+        f"{scene.time.duration:g}: nothing shakes"
+    ]
 
 
 def _overdamped(body: ElasticStructure) -> str:

@@ -143,6 +143,7 @@ REFUSED = [
     (["--samples", "0"], "--samples 0 must be at least 1"),
     (["--vary", "contact.fricton=0.1,0.2"], "contact.fricton is not a known key: did you mean 'friction'"),
     (["--vary", "contact.friction=0.1,-1.0"], "contact.friction = -1 must be at least 0"),
+    (["--vary", "time.step=1e-5,1.0", "--vary", "contact.friction=0.1"], "--vary time.step=1.0 contact.friction=0.1: "),
     (["--vary", "contact.friction=0.1", "--vary", "contact.friction=0.2"], "the key is given twice"),
     (["--vary", "contact.friction=0.1", "--set", "contact.friction=0.2"], "the key is given twice"),
     (["--vary", "contact.friction=0.1,0.1"], "would be the folder of two combinations"),

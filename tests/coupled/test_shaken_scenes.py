@@ -16,6 +16,7 @@ from coupled.build import build
 from coupled.measuring.record import Record
 from coupled.measuring.rises import height_over_floor
 from coupled.output.history import History, read_history
+from coupled.report import cautions
 from coupled.running.run import run_scene
 from coupled.scene import Scene, load_scene
 from coupled.step import with_step
@@ -122,6 +123,12 @@ def test_history_names_what_moves(tmp_path: Path) -> None:
     record = Record(run)
     np.testing.assert_array_equal(height_over_floor(record, "intruder"), seen["intruder_y"])
     np.testing.assert_allclose(record.moved(seen["time"], "left")[:, 1], seen["walls_y"], atol=1e-12)
+
+
+@pytest.mark.parametrize(("start", "sentences"), [(7.9, 0), (8.0, 1)])
+def test_shaking_after_the_end_is_told(start: float, sentences: int) -> None:
+    said = cautions.before(build(Scene.model_validate(changed(FEW, {"shaking.start": start}))))
+    assert sum("nothing shakes" in sentence for sentence in said) == sentences
 
 
 def test_run_taken_up_in_the_middle_of_a_period_has_the_same_bits(tmp_path: Path) -> None:
