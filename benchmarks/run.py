@@ -75,7 +75,13 @@ def main() -> None:
         metavar="group",
         help=f"any of {', '.join(groups)}; default: all but {', '.join(ON_DEMAND)}",
     )
-    chosen = parser.parse_args().groups or usual
+    parser.add_argument("--draw", action="store_true", help="draw the pictures of the last results, measure nothing")
+    asked = parser.parse_args()
+    if asked.draw:
+        for picture in (structure_figure, features_figure, search_figure, figure):
+            print(f"drawn: {picture.draw(report.read())}")
+        return
+    chosen = asked.groups or usual
     if unknown := set(chosen) - set(groups):
         parser.error(f"unknown group {', '.join(sorted(unknown))}: take any of {', '.join(groups)}")
     rates, steps, features_found, search_found = measures.Rates(), structure_steps.Rows(), [], []

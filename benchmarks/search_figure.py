@@ -26,7 +26,7 @@ COLOURS = dict(zip(WAYS, (RED, AMBER, GREEN, BLUE), strict=True))
 def draw(content: Mapping[str, Any], place: Path = PLACE) -> Path:
     """Draw the rows "search" of a file of results: one thread filled, two threads open and dashed."""
     rows = content["search"]
-    chart, axes = plt.subplots(figsize=(6.8, 4.8), layout="constrained")
+    chart, axes = plt.subplots(figsize=(6.8, 5.2), layout="constrained")
     for threads, style, filled in ((1, "-", True), (2, "--", False)):
         for way in WAYS:
             own = sorted(
@@ -41,17 +41,18 @@ def draw(content: Mapping[str, Any], place: Path = PLACE) -> Path:
                     mfc=COLOURS[way] if filled else "white",
                     label=f"{NAMES[way]}, {threads} thread{'s' * (threads > 1)}",
                 )  # fmt: skip
+    least = min(row["grains"] for row in rows)
     for n in crossovers(rows).values():
-        if n is not None:
+        if n is not None and n > least:  # else one way is ahead at every size, and no curves cross
             axes.axvline(n, color="0.6", lw=0.8, ls=":")
-            axes.annotate(f"{n:.2g}", (n, 1.0), xycoords=("data", "axes fraction"), fontsize=8, ha="left", va="top")
+            axes.annotate(f" {n:.0f}", (n, 1.0), xycoords=("data", "axes fraction"), fontsize=8, ha="left", va="top")
     axes.set(xscale="log", yscale="log", xlabel="discs", ylabel="finding contacts, per disc and step [ns]")
     machine = content["machine"]
     axes.set_title(
         f"Dense discs, lists that last {LIFE} steps ({machine['processor']}, {machine['cores']} cores)", fontsize=9
     )
     axes.grid(which="major", alpha=0.25)
-    axes.legend(fontsize=7, frameon=False, ncols=2)
+    chart.legend(loc="outside lower center", fontsize=8, frameon=False, ncols=2)
     place.parent.mkdir(parents=True, exist_ok=True)
     chart.savefig(place, dpi=150)
     plt.close(chart)

@@ -24,7 +24,12 @@ def measure(
         typer.Option(help="Of the period, 0 to below 1, at which heights are read; quiet: where they spread least."),
     ] = "0",
 ) -> None:
-    """Measure rises, convection, profiles and large deviations of shaken runs."""
+    """Measure what the grains of runs do, and write it as tables and pictures.
+
+    Rises per period of the shaking, their large deviations, convection, profiles.
+
+    Runs that differ in their seeds alone are samples of one case.
+    """
     if last is not None and last <= first:
         raise LeitoError(f"--last {last} must be greater than --first {first}")
     from coupled.measuring.measure import measure as measured

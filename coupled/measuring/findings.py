@@ -45,6 +45,8 @@ def _find_group(group: Group, periods: Periods) -> Findings:
     if first.shaken is None:
         notes.append(f"{group.label}: no walls shake: no rises, no convection")
     else:
+        if not intruder_names(first):
+            notes.append(f"{group.label}: the scene names no [[intruders]]: no rises")
         for name in intruder_names(first):
             try:
                 rises.append(rise_of(group, name, periods))
@@ -62,5 +64,8 @@ def _find_group(group: Group, periods: Periods) -> Findings:
         for rise in rises
         if rise.deviations.lacks
     ]
-    told = tuple(in_units(note, first.scene.get("units", "SI")) for note in notes)
+    short = [lacks for record in group.records if (lacks := record.lacks) is not None]
+    if short:
+        notes.append(f"{group.label}: {len(short)} of {len(group.records)} runs not at the end; {short[0]}")
+    told = tuple(in_units(note, first.units) for note in notes)
     return Findings(group=group, rises=tuple(rises), profiles=profiles, rolls=rolls, notes=told)

@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from coupled.errors import LeitoError
 from coupled.output import history
-from coupled.output.folder import SCENE
+from coupled.output.folder import SCENE, SUMMARY
 from coupled.output.frames import read_frame
 from coupled.scene.grains import USUAL_WALLS
+from coupled.scene.units import in_units
 from particles import Shaking
 
 Floats = NDArray[np.float64]
@@ -68,6 +69,8 @@ class Record:
     """
 
     def __init__(self, folder: Path) -> None:
+        if not folder.is_dir():
+            raise LeitoError(f"{folder}: there is no such folder; give the folder of a run")
         if not (folder / SCENE).exists() or not (folder / history.NAME).exists():
             raise LeitoError(f"{folder} holds no run ({SCENE} and {history.NAME}); give the folder of a run")
         self.folder = folder
@@ -81,13 +84,30 @@ class Record:
         return history.read_history(self.folder / history.NAME)
 
     @property
+    def lacks(self) -> str | None:
+        """What there is of a run that has not come to its end, in words; None of one that has."""
+        time, asked = self.history["time"], self.scene["time"]
+        last = float(time[-1]) if len(time) else 0.0
+        margin = 0.5 * float(np.median(np.diff(time))) if len(time) > 1 else 0.0  # it ends at a whole step
+        at_rest = asked.get("stop_at_rest") is not None and (self.folder / SUMMARY).exists()
+        if at_rest or last >= asked["duration"] - margin:
+            return None
+        said = f"{self.folder} ends at t = {last:g} s of {asked['duration']:g} s"
+        return f"{in_units(said, self.units)}: leito run with --resume goes on with it"
+
+    @property
+    def units(self) -> str:
+        """That key of the scene."""
+        return str(self.scene.get("units", "SI"))
+
+    @property
     def unit(self) -> str:
         """Of lengths: "m", or "-" of a dimensionless scene."""
-        return "m" if self.scene.get("units", "SI") == "SI" else "-"
+        return "m" if self.units == "SI" else "-"
 
     @property
     def time_unit(self) -> str:
-        return "s" if self.scene.get("units", "SI") == "SI" else "-"
+        return "s" if self.units == "SI" else "-"
 
     @property
     def gravity(self) -> float:

@@ -60,7 +60,8 @@ def animate(folder: Path, *, out: Path | None = None, every: int | None = None, 
     record = Record(folder)
     total = max(len(record.frame_paths(name)) for name in ("grains", "structure"))
     if total < 2:
-        raise LeitoError(f"{folder} holds {total} frames; a film needs two: run with output.frames_per_second above 0")
+        held = f"{total} frame{'s' * (total != 1)}"
+        raise LeitoError(f"{folder} holds {held}; a film needs two: run it with a larger output.frames_per_second")
     step = every if every is not None else -(-total // MOST_FRAMES)
     shown = len(range(0, total, step))
     if shown < 2:
@@ -79,7 +80,10 @@ def _writer(target: Path, rate: float) -> AbstractMovieWriter:
     if kind != ".mp4":
         raise LeitoError(f"--out {target}: a film is a .gif or an .mp4; give one of these endings")
     if not FFMpegWriter.isAvailable():
-        raise LeitoError(f"--out {target}: an .mp4 needs ffmpeg, which is not installed; give a .gif or install it")
+        raise LeitoError(
+            f"--out {target}: an .mp4 needs the program ffmpeg, which is not found; install it (on Debian: apt-get "
+            "install ffmpeg), or give a .gif"
+        )
     return FFMpegWriter(fps=rate)
 
 

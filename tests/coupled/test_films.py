@@ -1,6 +1,9 @@
 """Films of runs: discs painted where they are, as many pictures as asked for, refusals in a sentence."""
 
+import json
 import math
+import shutil
+import subprocess
 
 import numpy as np
 import pytest
@@ -58,6 +61,22 @@ def test_a_film_has_the_frames_asked_for_in_the_time_asked_for(run, tmp_path):
     assert len(np.unique(picture.reshape(-1, 3), axis=0)) > 8  # layers
 
 
+@pytest.mark.skipif(not FFMpegWriter.isAvailable() or shutil.which("ffprobe") is None, reason="needs ffmpeg")
+def test_an_mp4_has_the_frames_asked_for_in_the_time_asked_for(run, tmp_path):
+    film = animate(run, out=tmp_path / "film.mp4", seconds=3.0)
+    shown = "stream=codec_name,pix_fmt,nb_read_frames,r_frame_rate,width,height"
+    asked = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", shown, "-of", "json", str(film)]
+    stream = json.loads(subprocess.run(asked, capture_output=True, check=True, text=True).stdout)["streams"][0]
+    assert (stream["nb_read_frames"], stream["r_frame_rate"]) == ("6", "2/1")
+    assert (stream["codec_name"], stream["pix_fmt"]) == ("h264", "yuv420p"), "what browsers and slides can play"
+    still = tmp_path / "still.png"
+    subprocess.run(["ffmpeg", "-v", "error", "-i", str(film), "-vframes", "1", str(still)], check=True)
+    picture = np.array(Image.open(still).convert("RGB")).astype(int)
+    assert picture.shape == (stream["height"], stream["width"], 3)
+    # colours are stored coarser than places, and compressed
+    assert (np.abs(picture - INTRUDER).sum(axis=2) < 60).any()
+
+
 def test_the_command_says_where_the_film_is(run, tmp_path):
     said = CliRunner().invoke(app, ["animate", str(run), "--out", str(tmp_path / "film.gif"), "--every", "3"])
     assert said.exit_code == 0 and said.output.strip() == str(tmp_path / "film.gif")
@@ -66,7 +85,10 @@ def test_the_command_says_where_the_film_is(run, tmp_path):
 
 def test_refusals(run, tmp_path, monkeypatch):
     monkeypatch.setattr(FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
-    for out, said in (("film.mp4", "needs ffmpeg"), ("film.avi", "a .gif or an .mp4")):
+    for out, said in (
+        ("film.mp4", "needs the program ffmpeg, .* apt-get install ffmpeg"),
+        ("film.avi", "a .gif or an .mp4"),
+    ):
         with pytest.raises(LeitoError, match=said):
             animate(run, out=tmp_path / out)
     with pytest.raises(LeitoError, match="--every 6 leaves 1 of 6 frames; give at most 5"):
@@ -74,5 +96,7 @@ def test_refusals(run, tmp_path, monkeypatch):
     with pytest.raises(LeitoError, match="holds no run"):
         animate(tmp_path)
     short = make(tmp_path / "short", np.full(3, 0.1), frames=1)
-    with pytest.raises(LeitoError, match="holds 1 frames; a film needs two"):
+    with pytest.raises(LeitoError, match="holds 1 frame; a film needs two: run it with a larger output.frames"):
         animate(short)
+    with pytest.raises(LeitoError, match="there is no such folder"):
+        animate(tmp_path / "nowhere")

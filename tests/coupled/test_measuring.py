@@ -128,6 +128,24 @@ def test_frames_off_the_phase_make_no_convection(tmp_path):
     assert any("2.67 periods apart at most" in note and "set output.frames_per_second" in note for note in one.notes)
 
 
+@pytest.mark.parametrize(
+    ("written", "instead", "said"),
+    [
+        ("[[intruders]]\nradius = 0.6\ndensity = 1.0\n", "", "run: the scene names no [[intruders]]: no rises"),
+        ("[shaking]\namplitude = 0.5\nperiod = 4.0\nstart = 6.0\n", "", "run: no walls shake: no rises, no convection"),
+        ("duration = 86.0", "duration = 500.0", "ends at t = 86 of 500: leito run with --resume goes on with it"),
+    ],
+)
+def test_a_run_that_lacks_something_is_measured_for_the_rest_and_says_what(tmp_path, written, instead, said):
+    run = make(tmp_path / "run", np.full(20, 0.1))
+    text = (run / "scene.toml").read_text()
+    assert written in text
+    (run / "scene.toml").write_text(text.replace(written, instead))
+    (one,) = find([run], Periods())
+    assert one.profiles is not None and any(note.endswith(said) for note in one.notes)
+    assert bool(one.rises) == ("duration" in written)
+
+
 def test_refusals(tmp_path):
     with pytest.raises(LeitoError, match="no such folder"):
         groups_of([tmp_path / "nowhere"])

@@ -19,7 +19,7 @@ STEPS = 400  # rows per period
 
 
 def height(time: np.ndarray) -> np.ndarray:
-    """A steady rise under a bed that answers the floor in its period and in twice that, by more than many periods' rise."""
+    """A steady rise under a bed that answers the floor in its period and in twice that, far beyond its rise."""
     turns = time / PERIOD
     return RATE * turns + SWING * np.sin(np.pi * turns + 1.0) + np.cos(2.0 * np.pi * turns)
 
