@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from long_run import AT, LAST, LATE, PERIOD, RESUMED_SAMPLES, RUN, SAMPLES, SETTLING, STEP
+from long_run import AT, LAST, LATE, PERIOD, RESUMED_SAMPLES, ROWS, RUN, SAMPLES, SETTLING, STEP
 from numpy.typing import NDArray
 
 from coupled.campaign.statistics import Interval, confidence
@@ -24,13 +24,13 @@ class LongRun:
 
     @cached_property
     def samples(self) -> NDArray[np.void]:
-        """What was noted of the process, once it had begun to step."""
-        return _noted(SAMPLES)
+        """What was noted of the process between its first row and its last."""
+        return _noted(SAMPLES, ROWS)
 
     @cached_property
     def resumed(self) -> NDArray[np.void]:
-        """What was noted of the process that took up the copy."""
-        return _noted(RESUMED_SAMPLES)
+        """The same of the process that took up the copy."""
+        return _noted(RESUMED_SAMPLES, AT + ROWS)
 
     @cached_property
     def history(self) -> dict[str, Floats]:
@@ -72,20 +72,19 @@ class LongRun:
         """Rows at the ends of periods, the beginning of the shaking the first."""
         return (self.steps >= SETTLING) & (self.steps % PERIOD == 0)
 
-    def part(self, first: bool) -> NDArray[np.bool_]:
-        """Rows of the first hundred periods or of the last."""
-        if first:
-            return (self.steps > SETTLING) & (self.steps <= SETTLING + 100 * PERIOD)
-        return self.steps > LAST - 100 * PERIOD
+    def rows(self, hundred: int) -> NDArray[np.bool_]:
+        """Rows of the first hundred periods, the second, ..."""
+        first = SETTLING + 100 * hundred * PERIOD
+        return (self.steps > first) & (self.steps <= first + 100 * PERIOD)
 
-    def work(self, first: bool) -> Interval:
-        """Work of the floor and the walls in each of those periods."""
-        works = np.diff(self.history["walls_work"][self.ends])
-        return confidence(works[:100] if first else works[-100:])
+    def work(self, hundred: int) -> Interval:
+        """Work of the floor and the walls in a period, the bed answering in twice its period."""
+        works = np.diff(self.history["walls_work"][self.ends][::2]) / 2.0
+        return confidence(works[50 * hundred : 50 * hundred + 50])
 
-    def contacts(self, first: bool) -> Interval:
-        """Number of contacts in each of them."""
-        return confidence(self.history["contacts"][self.part(first)].reshape(100, -1).mean(axis=1))
+    def mean(self, name: str, hundred: int) -> Interval:
+        """A column of the history, likewise."""
+        return confidence(self.history[name][self.rows(hundred)].reshape(50, -1).mean(axis=1))
 
     @property
     def begun(self) -> float:
@@ -99,7 +98,7 @@ class LongRun:
         return float(np.polyfit(late["step"], late["resident"], 1)[0])
 
     def lists(self) -> tuple[float, float]:
-        """New contact lists per period until the copy, and from there to the end; of the first, settling included."""
+        """New contact lists per period until the copy, the settling included, and from there to the end."""
         before, after = (
             int(checkpoint.load(folder / checkpoint.NAME)[0]["particles.counters"][1]) for folder in (LATE, RUN)
         )
@@ -114,6 +113,7 @@ class LongRun:
         return self._scene.shaking.amplitude_of(self._scene.shaking.period, self._scene.gravity)
 
 
-def _noted(path: Path) -> NDArray[np.void]:
+def _noted(path: Path, first: int) -> NDArray[np.void]:
+    """Rows from a step on, until the end, where the summary is written."""
     rows = np.genfromtxt(path, delimiter=",", names=True, deletechars="", ndmin=1)
-    return rows[rows["step"] > 0]
+    return rows[(rows["step"] >= first) & (rows["step"] < LAST)]
