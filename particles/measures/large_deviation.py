@@ -43,12 +43,13 @@ class RateFunction(NamedTuple):
     resampled: Floats
 
 
-def usual_edges(sampling: Resampling) -> Floats:
-    """Edges of bins over all windows of the longest length [m], one of them centred on the mean.
+def usual_edges(sampling: Resampling, periods: int | None = None) -> Floats:
+    """Edges of bins over all windows of one length [m], one of them centred on the mean; absent: of the longest.
 
     Three bins per standard deviation: averaging over a bin changes I by 1 % three deviations from the mean.
     """
-    v = np.concatenate(sampling.sums(sampling.longest)) / sampling.longest
+    n = sampling.longest if periods is None else periods
+    v = np.concatenate(sampling.sums(n)) / n
     width, mean = float(v.std()) / BINS_PER_DEVIATION, float(v.mean())
     if width <= 1e-12 * max(abs(mean), 1e-300):
         raise ParticleError("all windows have the same mean: there is no large-deviation function to be seen")

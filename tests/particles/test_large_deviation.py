@@ -101,6 +101,16 @@ def test_windows_are_extrapolated_to_the_limit():
     assert covered(plain).min() < 0.5  # without it the shortest windows are wrong for sure
 
 
+def test_bins_are_as_wide_as_the_windows_ask():
+    """Windows of independent increments spread by 1/sqrt(n) of a single one; a third of that is a bin."""
+    record = gaussian(np.random.default_rng(12), 40_000)
+    sampling = Resampling(sequences=(record,), longest=16)
+    for n, edges in ((16, usual_edges(sampling)), (16, usual_edges(sampling, 16)), (4, usual_edges(sampling, 4))):
+        # four standard errors of a deviation of 40 000/n windows side by side
+        assert np.diff(edges) == pytest.approx(1.0 / 3.0 / math.sqrt(n), rel=4.0 * math.sqrt(0.5 * n / 40_000))
+        assert np.abs(0.5 * (edges[1:] + edges[:-1]) - record.mean()).min() < 1e-3
+
+
 def test_a_mean_that_changes_bins_with_the_length_leaves_no_gap():
     """Single periods of a record that drifts have their mean in another bin than longer windows."""
     sampling = Resampling(sequences=(gaussian(np.random.default_rng(10), 2000),), longest=4)

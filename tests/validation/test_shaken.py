@@ -94,9 +94,9 @@ box 15 wide at Gamma = 1.5, from the first ten periods to the 20th to 30th, {see
 
 ## Large deviations of the rise
 
-Not from these ensembles: once the intruder is at the top its rises have another distribution, and 200 periods
-of a sample hold too few windows; `leito measure` estimates the function from longer ones and says whether it
-has settled.
+Not from these ensembles: once the intruder is at the top its rises have another distribution, and there are too
+few samples. [Many small boxes](rises.md) tell it for a stage of the rise, with its symmetry and what a Gaussian
+leaves open.
 
 ## A film
 
