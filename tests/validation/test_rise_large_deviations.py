@@ -6,6 +6,7 @@ Makes (or takes up) the ensembles in `runs/validation/rises` and writes `docs/va
 from __future__ import annotations
 
 import sys
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -27,6 +28,7 @@ from particles.measures import Estimate, WindowMoments
 
 DOCS = Path(__file__).parents[2] / "docs" / "validation"
 PICTURE = "rises.png"
+WIDE = 118  # of a line of text
 USUAL = 0.1  # share of bins beyond bars of level 0.95 that says nothing: twice what is expected
 PAGE = """# Large deviations of the rise of an intruder
 
@@ -160,7 +162,13 @@ def gaussian_words(one: Measured) -> str:
     if not fails:
         return "the Gaussian explains all windows within bars"
     text = f"the Gaussian fails by shape or bins at n = {', '.join(map(str, fails))}"
-    return text + (f" and explains n = {', '.join(map(str, lasting))} within bars" if lasting else "")
+    text += f" and explains n = {', '.join(map(str, lasting))} within bars" if lasting else ""
+    longest = found.moments[-1]
+    skewed = longest.skewness
+    if holds_zero(skewed):
+        return f"{text}; whether the longest windows are skewed is open: {told(skewed, 2)}"
+    side = "slow" if skewed.value > 0.0 else "fast"
+    return f"{text}; windows of {longest.periods} are skewed by {told(skewed, 2)}: {side} ones are the rarer"
 
 
 def verdict(one: Measured) -> str:
@@ -198,13 +206,16 @@ def symmetry_words(one: Measured) -> str:
     if not seen:
         return "There is no left tail, and no symmetry."
     text = f"Left tails are long enough up to n = {seen[-1].periods}"
-    if len(seen) > 1:
-        apart = abs(seen[-1].slope - seen[-2].slope)
-        settled = apart < seen[-1].half_width
-        text += f"; the slope has {'' if settled else 'not '}settled there"
-    if one.found.slope is not None:
-        text += f", and the line over 1/n ends at {one.found.slope[0]:.1f} +- {one.found.slope[1]:.1f}"
-    return text + "."
+    if one.found.slope is None:
+        return text + ", of too few lengths for a limit of the slope."
+    settled = abs(seen[-1].slope - seen[-2].slope) < seen[-1].half_width
+    value = f"{one.found.slope[0]:.1f} +- {one.found.slope[1]:.1f}"
+    if settled:
+        return text + f"; the last two slopes agree within bars, and the line over 1/n ends at {value}."
+    return (
+        text
+        + f"; the slope still changes there by more than its bar: {value}, where the line over 1/n ends, is a guess."
+    )
 
 
 def draw(cases: Sequence[Measured]) -> None:
@@ -278,10 +289,10 @@ def write(cases: Sequence[Measured]) -> None:
             phases.append(f"| {one.case.title}, phase {phase:.1f} | {' | '.join(cells)} |")
     page = PAGE.format(
         picture=PICTURE,
-        stages="\n\n".join(map(stage_words, cases)),
+        stages="\n\n".join(textwrap.fill(stage_words(one), WIDE) for one in cases),
         quarters="\n".join(map(quarter_row, cases)),
         windows="\n".join(row for one in cases for row in window_rows(one)),
-        verdicts="\n\n".join(map(verdict, cases)),
+        verdicts="\n\n".join(textwrap.fill(verdict(one), WIDE) for one in cases),
         lengths=" | ".join(f"n = {n}" for n in lengths),
         dashes="|".join("---" for _ in lengths),
         phases="\n".join(phases),
