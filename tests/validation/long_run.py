@@ -26,8 +26,7 @@ AT = LAST - CHECKPOINTS  # step of the checkpoint that is copied: 99 %
 OVERRIDES = (
     f"time.step={STEP}", "time.duration=1612.761576", "shaking.start=31.622776",
     "output.history_interval=0.98821175", "output.frames_per_second=0.02529822",
-    "output.checkpoint_interval=15.811388", "output.figures=false", "quantities.0.start=31.622776",
-    "quantities.1.start=1415.119226",
+    "output.checkpoint_interval=15.811388", "output.figures=false", "quantities=[]",
 )  # fmt: skip
 PAUSE, CLOSE_PAUSE = 15.0, 0.5  # seconds between two looks; shortly before the copy
 
@@ -76,9 +75,9 @@ def copy_late() -> None:
     shutil.rmtree(beside, ignore_errors=True)
     beside.mkdir()
     shutil.copyfile(RUN / checkpoint.NAME, beside / checkpoint.NAME)  # appears in one move, so the copy is whole
-    if int(checkpoint.load(beside / checkpoint.NAME)[0]["model.steps_done"]) < AT:
+    if int(checkpoint.load(beside / checkpoint.NAME)[0]["model.steps_done"]) != AT:
         return
-    rest = shutil.ignore_patterns(checkpoint.NAME, "*.part")
+    rest = shutil.ignore_patterns(checkpoint.NAME, SUMMARY, "*.part")
     shutil.copytree(RUN, beside, ignore=rest, dirs_exist_ok=True)
     beside.rename(LATE)
 
