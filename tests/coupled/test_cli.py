@@ -200,7 +200,7 @@ def test_refusal_loads_neither_finite_elements_nor_compiled_kernels():
         capture_output=True,
         text=True,
         env={**os.environ, "PYTHONPATH": str(Path(coupled.__file__).parents[1])},
-        timeout=60,
+        timeout=300,
     )
     assert done.returncode == 2
     assert done.stdout.strip() == ""
@@ -212,7 +212,7 @@ def test_petsc_options_reach_the_solvers_and_the_provenance(tmp_path):
     run = [sys.executable, "-m", "coupled.cli", "run", "beam_vibration", "--set", "time.duration=2e-4", "--out"]
     options = "-leito_ksp_type cg -leito_pc_type gamg -leito_kps_rtol 1e-9"
     done = subprocess.run(
-        [*run, str(tmp_path / "out"), "--no-progress", "--petsc", options], capture_output=True, text=True, timeout=120
+        [*run, str(tmp_path / "out"), "--no-progress", "--petsc", options], capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stderr
     assert "note: no solver of this scene knows the PETSc option -leito_kps_rtol" in done.stderr
@@ -230,7 +230,7 @@ def test_petsc_options_of_others_are_refused(command, leito, tmp_path):
 def test_petsc_option_without_meaning_is_one_line():
     """In a process of its own: PETSc does not recover from such an error."""
     run = [sys.executable, "-m", "coupled.cli", "check", "beam_vibration", "--petsc", "-leito_ksp_type none_such"]
-    done = subprocess.run(run, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(run, capture_output=True, text=True, timeout=300)
     assert done.returncode == 2
     (line,) = done.stderr.strip().splitlines()
     assert line.startswith("leito: PETSc cannot set up a solver for 810 unknowns") and "none_such" in line

@@ -160,7 +160,7 @@ def test_two_ranks_give_the_answer_of_one(tmp_path: Path) -> None:
     for ranks in (1, 2):
         target = tmp_path / f"{ranks}.npz"
         command = ["mpirun", "-n", str(ranks), "--oversubscribe", sys.executable, "-c", RANKS, str(target)]
-        done = subprocess.run(command, env=os.environ | permitted, capture_output=True, text=True, timeout=120)
+        done = subprocess.run(command, env=os.environ | permitted, capture_output=True, text=True, timeout=300)
         assert done.returncode == 0, done.stderr
         found.append(np.load(target))
     for name in ("u", "f", "r"):

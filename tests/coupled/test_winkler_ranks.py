@@ -34,7 +34,7 @@ def run(ranks: int, target: Path, steps: int, *options: str) -> dict[str, np.nda
     permitted = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     program = [sys.executable, "-c", PROGRAM, str(target), str(steps), *options]
     command = ["mpirun", "-n", str(ranks), "--oversubscribe", *program]
-    done = subprocess.run(command, env=os.environ | permitted, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, env=os.environ | permitted, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     return dict(np.load(target))
 

@@ -204,7 +204,7 @@ def placed(name: str) -> Trial:
     if name == "1 km above":
         tables |= {"box": {"width": WIDTH, "height": 2000.0}, "step": 2e-4, "duration": 15.0}
     scene = on_bed("glued, predicted", structure=structure, **tables)
-    return Trial(scene=scene, check=carried, limit=120.0)
+    return Trial(scene=scene, check=carried, limit=300.0)
 
 
 PATHS = {

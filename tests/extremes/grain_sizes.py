@@ -89,7 +89,7 @@ def many(count: int) -> Trial:
         allowed = 1e-12 * count * MASS * gravity * columns * pitch
         return [Measured(what="change of potential energy [J/m]", value=value, expected=expected, allowed=allowed)]
 
-    return Trial(scene=scene, check=check, limit=240.0)
+    return Trial(scene=scene, check=check, limit=300.0)
 
 
 def far_apart(distance: float) -> Trial:

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from typing import Any
 
 MEMORY = 10 * 2**30  # bytes of address space; loaded libraries take some 3 of them
-STARTING = 120.0  # seconds until the process must have loaded what it needs
+STARTING = 300.0  # seconds until the process must have loaded what it needs
 
 
 @dataclass(frozen=True)

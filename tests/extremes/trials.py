@@ -90,7 +90,7 @@ class Trial:
     check: Check
     prepare: Callable[[Path], None] | None = None
     arguments: tuple[str, ...] = ()
-    limit: float = 180.0
+    limit: float = 300.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -88,8 +88,8 @@ def test_two_ranks_give_the_serial_answer(tmp_path: Path) -> None:
     clean = {key: value for key, value in os.environ.items() if not key.startswith(marks)}
     run = [sys.executable, "-c", SCRIPT]
     mpirun = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2"]
-    subprocess.run([*run, str(tmp_path / "serial")], check=True, env=clean, timeout=180)
-    subprocess.run([*mpirun, *run, str(tmp_path / "parallel")], check=True, env=clean, timeout=180)
+    subprocess.run([*run, str(tmp_path / "serial")], check=True, env=clean, timeout=300)
+    subprocess.run([*mpirun, *run, str(tmp_path / "parallel")], check=True, env=clean, timeout=300)
     serial = np.load(tmp_path / "serial_0.npz")
     ranks = [np.load(tmp_path / f"parallel_{rank}.npz") for rank in range(2)]
     assert len(serial.files) > 100

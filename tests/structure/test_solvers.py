@@ -166,8 +166,8 @@ def test_two_ranks_agree_when_they_iterate(preconditioner: str, time_step: str, 
     tail = [preconditioner, time_step]
     run = [sys.executable, "-c", RANKS]
     mpirun = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2"]
-    subprocess.run([*run, str(tmp_path / "serial"), *tail], check=True, env=clean, timeout=180)
-    subprocess.run([*mpirun, *run, str(tmp_path / "parallel"), *tail], check=True, env=clean, timeout=180)
+    subprocess.run([*run, str(tmp_path / "serial"), *tail], check=True, env=clean, timeout=300)
+    subprocess.run([*mpirun, *run, str(tmp_path / "parallel"), *tail], check=True, env=clean, timeout=300)
     serial = np.load(tmp_path / "serial_0.npz")
     for rank in range(2):
         parallel = np.load(tmp_path / f"parallel_{rank}.npz")
