@@ -23,6 +23,11 @@ from dolfinx.fem import petsc as fem_petsc
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+# Seconds for which dolfinx waits for another process that compiles the same form; its own 10 are few on a busy machine.
+WAIT = 120
+_defaults = getattr(dolfinx.jit, "DOLFINX_DEFAULT_JIT_OPTIONS", None) or dolfinx.jit.DOLFINX_DEFAULT_JIT_PARAMETERS
+_defaults["timeout"] = (WAIT, _defaults["timeout"][1])
+
 CELLS = {"quadrilateral": basix.CellType.quadrilateral, "triangle": basix.CellType.triangle}
 
 

@@ -2,16 +2,20 @@
 
 Numba's disk cache looks at the file of the compiled function alone: it keeps stale machine
 code when a *callee in another file* changes. The cache folder is therefore named after a hash
-of the sources of all kernels, so that any edit starts a fresh one. No fast-math flag is set, not
-even contraction: the same bits must come out of the serial and the threaded build of a loop, with
-the ledger and without.
+of the sources of all kernels, so that any edit starts a fresh one. Of two processes that save builds
+of one function at the same time it may keep one's index and the other's code: here they save one after
+the other. No fast-math flag is set, not even contraction: the same bits must come out of the serial and
+the threaded build of a loop, with the ledger and without.
 """
 
+import contextlib
+import fcntl
 import hashlib
 import math
 import os
 import platform
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -44,9 +48,21 @@ def _compiled(function: Function, *, parallel: bool = False, inline: bool = Fals
     # Numba names the cache file after the function alone: the two builds of one loop need two folders.
     config.CACHE_DIR = str(CACHE_FOLDER / ("threads" if parallel else "serial"))
     try:
-        return numba.njit(cache=True, parallel=parallel, forceinline=inline, error_model="numpy")(function)
+        compiled = numba.njit(cache=True, parallel=parallel, forceinline=inline, error_model="numpy")(function)
     finally:
         config.CACHE_DIR = before
+    if hasattr(compiled, "_cache"):  # not where Numba is told to compile nothing
+        file = compiled._cache._cache_file
+        file.save = partial(_save_alone, file.save)
+    return compiled
+
+
+def _save_alone(save: Callable[[Any, Any], None], key: Any, build: Any) -> None:
+    """Numba's `save` of a build under a key, while no other process does that."""
+    with open(CACHE_FOLDER / "lock", "w") as lock:
+        with contextlib.suppress(OSError):  # a disk that knows no locks
+            fcntl.flock(lock, fcntl.LOCK_EX)  # given back with the file
+        save(key, build)
 
 
 def kernel(function: Function) -> Function:
