@@ -141,6 +141,7 @@ def test_run_taken_up_in_the_middle_of_a_period_has_the_same_bits(tmp_path: Path
 
 
 ROUGH = changed(FEW, {"box.walls": [], "shaking.gamma": 0.5, "shaking.start": 10.0, "time.duration": 12.0})
+ROUGH["contact"] = {"normal_stiffness": 1000.0, "normal_damping": 5.0, "tangential_stiffness": 750.0, "friction": 0.5}
 ROUGH["rows"] = [{"start": [0.5, -0.5], "end": [11.5, -0.5], "count": 12, "radius": 0.5}]
 """A floor of glued grains in place of the wall."""
 

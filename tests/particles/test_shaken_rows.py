@@ -1,10 +1,11 @@
 """Prescribed grains that move with the shaken walls: the same chain, on a grain that is held instead of on a floor."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
-from discs import FLOOR, balance, by_number, normal_only
+from discs import FLOOR, balance, by_number
 from test_shaken_chain import (
     AMPLITUDE,
     DENSITY,
@@ -26,14 +27,23 @@ ROW = 0
 MOTION = Shaking(amplitude=AMPLITUDE, period=PERIOD, bodies=(ROW,))
 
 
+def system_of(grains: Grains, motion: Shaking, dt: float, *, c_n: float = 0.0, **options: Any) -> ParticleSystem:
+    """With friction, and repeating in x, so that one loop is compiled for all tests."""
+    law = ContactModel(
+        normal=LinearSpringDashpot(stiffness=K_N, damping=c_n),
+        tangential=CoulombFriction(stiffness=500.0, friction=0.5, damping=0.0),
+    )
+    options = {"gravity": (0.0, -GRAVITY), "period": (30.0, None)} | options
+    return ParticleSystem(grains, law, time_step=dt, shaking=motion, **options)
+
+
 def column(dt: float, *, c_n: float = 0.0, scheme: str = "leapfrog") -> ParticleSystem:
     """N discs at rest on each other, the first on a held one whose top is at height 0."""
     overlap = MASS * GRAVITY / K_N * np.arange(N, 0, -1)
     height = RADIUS + 2 * RADIUS * np.arange(N) - np.cumsum(overlap)
     grains = Grains.discs(np.column_stack([np.zeros(N), height]), RADIUS, DENSITY)
     grains = grains.with_prescribed([[0.0, -RADIUS]], RADIUS, ROW)
-    options = {"time_step": dt, "shaking": MOTION, "gravity": (0.0, -GRAVITY), "scheme": scheme}
-    return normal_only(grains, k_n=K_N, c_n=c_n, **options)
+    return system_of(grains, MOTION, dt, c_n=c_n, scheme=scheme)
 
 
 def errors(scheme: str, c_n: float, exact: np.ndarray, end: float) -> np.ndarray:
@@ -81,7 +91,7 @@ def test_row_is_where_the_floor_is_after_any_number_of_steps() -> None:
     for done in (0, 9_999_999):
         grains = Grains.discs([[0.0, 50.0]], RADIUS, DENSITY).with_prescribed([[3.0, 0.0], [4.5, 0.0]], RADIUS, ROW)
         grains = grains.with_prescribed([[9.0, 0.0]], RADIUS, ROW + 1)
-        system = normal_only(grains, k_n=K_N, time_step=1e-3, walls=[floor], shaking=motion)
+        system = system_of(grains, motion, 1e-3, walls=[floor], gravity=(0.0, 0.0))
         system.start()
         system.steps_done = done
         system.advance(6_000)
@@ -94,10 +104,6 @@ def test_row_is_where_the_floor_is_after_any_number_of_steps() -> None:
 
 def test_rough_floor_carries_grains_along_by_friction() -> None:
     """A heap on a floor of held grains that moves sideways: it is dragged along, and the ledger's error has order 2."""
-    law = ContactModel(
-        normal=LinearSpringDashpot(stiffness=K_N, damping=5.0),
-        tangential=CoulombFriction(stiffness=500.0, friction=0.5, damping=0.0),
-    )
     motion = Shaking(amplitude=1.0, period=8.0, direction=(1.0, 0.0), bodies=(ROW,))
     x, y = np.meshgrid(0.5 + 1.05 * np.arange(28), 1.0 + 1.02 * np.arange(24))
     held = np.column_stack([0.5 + np.arange(30), np.zeros(30)])
@@ -105,8 +111,7 @@ def test_rough_floor_carries_grains_along_by_friction() -> None:
     for dt in (4e-3, 2e-3, 1e-3):
         grains = Grains.discs(np.column_stack([x.ravel(), y.ravel()]), RADIUS, DENSITY)
         grains = grains.with_prescribed(held, 0.5, ROW)
-        options = {"time_step": dt, "shaking": motion, "gravity": (0.0, -GRAVITY), "period": (30.0, None)}
-        system = ParticleSystem(grains, law, **options)
+        system = system_of(grains, motion, dt, c_n=5.0)
         system.start()
         start = balance(system)
         system.advance(round(3.6 / dt))
@@ -122,4 +127,4 @@ def test_rough_floor_carries_grains_along_by_friction() -> None:
 def test_body_that_is_not_there_is_refused() -> None:
     grains = Grains.discs([[0.0, 5.0]], RADIUS, DENSITY)
     with pytest.raises(ParticleError, match="shaking moves body 0, which no prescribed grain has"):
-        normal_only(grains, k_n=K_N, time_step=1e-3, shaking=MOTION)
+        system_of(grains, MOTION, 1e-3)
