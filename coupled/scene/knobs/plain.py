@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from coupled.errors import SceneError
 from coupled.scene.grains import Grains
 from coupled.scene.knobs.contact import by_coarsening, by_stiffness, scaled
 from coupled.scene.knobs.mesh import refined
@@ -20,7 +21,7 @@ def plain(scene: Scene) -> Scene:
     - `grains.coarsening` c: radii times c, counts over c^2, rounded; dashpots times c, so that restitution stays. With
       linear springs a packing is then as stiff as before, and its overlaps are the same shares of the radii: force
       and radius grow alike. Hertz's spring is scaled to that end, `hertz_stiffness` by c^-1/2, Young's modulus by
-      1/c. Glued grains become as much larger and fewer. Rows stay; a list of places refuses.
+      1/c. Glued grains become as much larger and fewer. Rows and intruders stay; a list of places refuses.
     - `contact.stiffness_factor` f: springs times f, dashpots times its root.
     - `structure.refinement`: numbers of cells times that, and as many glued grains as before.
     - `time.refinement`: the step over that; a period in steps stays as long.
@@ -39,7 +40,37 @@ def plain(scene: Scene) -> Scene:
         return scene
     coarsening = math.prod(one.grains.coarsening or 1.0 for one in chain if one.grains is not None)
     stiffness = next((f for one in chain if one.contact and (f := one.contact.stiffness_factor) is not None), 1.0)
-    return _applied(scene, coarsening, stiffness)
+    _check_period(scene, coarsening, stiffness)
+    try:
+        return _applied(scene, coarsening, stiffness)
+    except SceneError as error:
+        made_by = _told(scene, coarsening, stiffness, error.key)
+        raise SceneError(f"{str(error).removesuffix('.')}{made_by}.", key=error.key, file=error.file) from None
+
+
+def _check_period(scene: Scene, coarsening: float, stiffness: float) -> None:
+    """Refuse factors that would change the period of a shaking that counts steps."""
+    counts = scene.shaking is not None and scene.shaking.period_steps is not None
+    if counts and scene.time.step == "auto" and (coarsening, stiffness) != (1.0, 1.0):
+        raise refusal(
+            "shaking.period_steps",
+            scene.shaking.period_steps,
+            'counts steps that are left to the model (time.step = "auto"), and grains.coarsening or '
+            "contact.stiffness_factor changes them, and so the period; give shaking.period, or time.step as a number",
+        )
+
+
+def _told(scene: Scene, coarsening: float, stiffness: float, key: str) -> str:
+    """The factors that make the numbers a sentence on a key speaks of, unless it is one of them."""
+    refinement = 1.0 if scene.structure is None else scene.structure.refinement or 1.0
+    factors = {
+        "grains.coarsening": coarsening,
+        "contact.stiffness_factor": stiffness,
+        "structure.refinement": refinement,
+        "time.refinement": scene.time.refinement or 1.0,
+    }
+    given = [f"{key} = {factor:g}" for key, factor in factors.items() if factor != 1.0]
+    return f" (these numbers are made by {', '.join(given)})" if given and key not in factors else ""
 
 
 def _has_factors(scene: Scene) -> bool:
