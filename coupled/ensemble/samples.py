@@ -9,7 +9,7 @@ from pathlib import Path
 from coupled.campaign import Task
 from coupled.ensemble.grid import Combination, grid
 from coupled.errors import LeitoError, SceneError
-from coupled.scene import load_scene
+from coupled.scene import Scene, load_scene
 from coupled.scene.chance import seed_key
 
 
@@ -49,12 +49,7 @@ def samples_of(
     found = []
     for combination in grid(vary, overrides):
         sets = [*overrides, *combination.overrides]
-        try:
-            first = load_scene(scene, sets, accuracy=accuracy)
-        except SceneError as error:
-            if not combination.values:
-                raise
-            raise LeitoError(f"--vary {' '.join(combination.overrides)}: {error}") from None
+        first = _first(scene, combination, sets, accuracy)
         place = out / combination.label if combination.values else out
         key = seed_key(first)
         if key is None:
@@ -75,6 +70,16 @@ def samples_of(
         )
         for combination, seed, loaded, folder in found
     ]
+
+
+def _first(scene: str | Path, combination: Combination, sets: Sequence[str], accuracy: str | None) -> Scene:
+    """The scene of a combination with its own seed."""
+    try:
+        return load_scene(scene, sets, accuracy=accuracy)
+    except SceneError as error:
+        if not combination.values:
+            raise
+        raise LeitoError(f"--vary {' '.join(combination.overrides)}: {error}") from None
 
 
 def _nothing_random(scene: str | Path, count: int) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from coupled.measuring.findings import Findings
 from coupled.measuring.look import COLOURS, WIDTH, length, title
 from coupled.measuring.record import Floats, Shaken
-from coupled.measuring.rises import Rise, height_over_floor
+from coupled.measuring.rises import Rise, height_over_floor, speed_over_floor
 from coupled.measuring.states import Rolls
 from coupled.measuring.windows_picture import large_deviation
 from coupled.report.drawing import Axes, Figure, NullFormatter, plt
@@ -189,7 +189,10 @@ def _streamlines(axes: Axes, rolls: Rolls) -> None:
 
 
 def phase_portrait(one: Findings) -> Figure | None:
-    """The first sample's intruder over the phase: height over the floor less its rise, and velocity against it."""
+    """The first sample's intruder over the phase: height over the floor less its rise, and velocity against it.
+
+    Both as the floor sees them.
+    """
     record = one.group.records[0]
     if not one.rises or record.shaken is None:
         return None
@@ -197,17 +200,18 @@ def phase_portrait(one: Findings) -> Figure | None:
     rows = shaken.period / float(np.median(np.diff(time))) if len(time) > 1 else 0.0
     if rows < FEWEST_ROWS - 0.01:
         return None
-    height, on = height_over_floor(record, rise.name), time >= rise.samples[0].time[0]
+    looks = rise.samples[0].time
+    height, on = height_over_floor(record, rise.name), (time >= looks[0]) & (time <= looks[-1])
     level = strobe(time, height, period=shaken.period, start=shaken.start)
     swing = (height - np.interp(time, level.time, level.value))[on]
-    speed = record.history.get(f"{rise.name}_vy", np.gradient(height, time))[on]
+    speed = speed_over_floor(record, rise.name)[on]
     figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH + 1.0, 3.8), layout="constrained")
     seen = portrait(time[on], swing, period=shaken.period, start=shaken.start, bins=min(32, round(rows)))
     left.plot(seen.phase, seen.value, ".", ms=2, color=COLOURS[0], alpha=0.4)
-    left.plot((np.arange(len(seen.mean)) + 0.5) / len(seen.mean), seen.mean, "k-", lw=1.2)
+    left.plot(np.arange(len(seen.mean) + 1) / len(seen.mean), np.append(seen.mean, seen.mean[0]), "k-", lw=1.2)
     left.set(xlabel="phase of the shaking", ylabel=length([one], "height over the floor, rise taken out"))
     points = right.scatter(swing, speed, c=seen.phase, s=3, cmap="twilight", vmin=0.0, vmax=1.0)
     figure.colorbar(points, ax=right, label="phase")
-    right.set(xlabel=length([one], "height over the floor, rise taken out"), ylabel="vertical velocity")
+    right.set(xlabel=length([one], "height over the floor, rise taken out"), ylabel="velocity over the floor")
     figure.suptitle(f"{one.group.label}: {rise.name}, {record.title}", fontsize=9)
     return figure

@@ -110,6 +110,13 @@ def height_over_floor(record: Record, name: str) -> Floats:
     return np.asarray(columns[f"{name}_y"] - record.box_moved(columns["time"])[:, 1])
 
 
+def speed_over_floor(record: Record, name: str) -> Floats:
+    """Rate at which that height grows [m/s] in the half step after each row, whose velocity the history has."""
+    columns, step = record.history, float(record.scene["time"]["step"])
+    floor = [record.box_moved(time)[:, 1] for time in (columns["time"], columns["time"] + step)]
+    return np.asarray(columns[f"{name}_vy"] - (floor[1] - floor[0]) / step)
+
+
 def intruder_names(record: Record) -> list[str]:
     """Intruders that the history follows."""
     names = ["intruder" if k == 0 else f"intruder_{k + 1}" for k in range(record.intruders)]

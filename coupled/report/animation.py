@@ -138,7 +138,8 @@ def _view(record: Record, every: int) -> View:
             low, high = np.minimum(low, (points - reach).min(axis=0)), np.maximum(high, (points + reach).max(axis=0))
     box = record.box
     if box is not None:
-        low[0], high[0] = min(low[0], 0.0), max(high[0], box["width"])
+        aside = record.moved(np.append(record.frame_times("grains"), 0.0), "left", "right")[:, 0]
+        low[0], high[0] = min(low[0], aside.min()), max(high[0], box["width"] + aside.max())
         for axis, length in enumerate(record.period):
             if length is not None:
                 low[axis], high[axis] = 0.0, length

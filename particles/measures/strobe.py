@@ -77,7 +77,7 @@ def quietest_phase(looks: Sequence[Sequence[Floats]]) -> int:
 
 
 class Portrait(NamedTuple):
-    """Points over the phase: phase (n,) 0 to 1, the quantity (n,), its mean and standard deviation per bin (k,)."""
+    """Points over the phase: phase (n,) 0 to 1, the quantity (n,), its mean and standard deviation about j/k (k,)."""
 
     phase: Floats
     value: Floats
@@ -86,12 +86,16 @@ class Portrait(NamedTuple):
 
 
 def portrait(time: Floats, value: ArrayLike, *, period: float, start: float = 0.0, bins: int = 32) -> Portrait:
-    """A quantity over the phase of the shaking, from `start` [s] on; bins of equal width from phase 0 on."""
+    """A quantity over the phase of the shaking, from `start` [s] on.
+
+    Bins are equally wide, their middles at the phases 0, 1/bins, 2/bins ...: rows of which a whole number makes a
+    period lie in the middles, and round-off moves none to the next bin.
+    """
     require("period", period, above=0.0)
     require("bins", bins, at_least=1)
     on = time >= start
     phase, kept = ((time[on] - start) / period) % 1.0, np.asarray(value, float)[on]
-    bin_of = np.minimum((phase * bins).astype(np.int64), bins - 1)
+    bin_of = np.floor(phase * bins + 0.5).astype(np.int64) % bins
     count = np.bincount(bin_of, minlength=bins)
     held = count > 0
     mean, deviation = np.full(bins, np.nan), np.full(bins, np.nan)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from shaken_record import AMPLITUDE, FINE, PERIOD, RADIUS, START, floor_at, make
+from shaken_record import AMPLITUDE, FINE, PERIOD, RADIUS, ROWS, START, floor_at, make
 from typer.testing import CliRunner
 
 from coupled.cli.app import app
@@ -14,7 +14,7 @@ from coupled.errors import LeitoError
 from coupled.measuring.findings import find
 from coupled.measuring.measure import draw_run, measure
 from coupled.measuring.record import Record
-from coupled.measuring.rises import Periods, height_over_floor
+from coupled.measuring.rises import Periods, height_over_floor, speed_over_floor
 from coupled.measuring.samples import groups_of
 from coupled.output.frames import Frames, read_frame
 
@@ -243,3 +243,29 @@ def test_frames_beside_the_usual_ones_do_not_hide_convection(tmp_path, more):
         path.rename(run / "frames" / f"grains.x{k:05d}.h5")
     (found,) = find([run], Periods())
     np.testing.assert_allclose(found.rolls.field.displacement, alone.rolls.field.displacement, atol=1e-12)
+
+
+def test_the_floor_s_velocity_is_taken_out_of_the_portrait(tmp_path):
+    """A grain that lies on the floor: the velocity of half a step later is the floor's."""
+    run = make(tmp_path / "run", np.zeros(3))
+    rows = (run / "history.csv").read_text().splitlines()
+    step, names = 0.01, rows[0].split(",")
+    told = [rows[0]]
+    for row in rows[1:]:
+        values = row.split(",")
+        time = float(values[0])
+        values[names.index("intruder_vy [m/s]")] = repr(float(floor_at(time + step) - floor_at(time)) / step)
+        told.append(",".join(values))
+    (run / "history.csv").write_text("\n".join(told) + "\n")
+    # differences of numbers of 0.5 with 1e-16 over a step of 0.01
+    np.testing.assert_allclose(speed_over_floor(Record(run), "intruder"), 0.0, atol=1e-13)
+
+
+@pytest.mark.parametrize(("every", "first", "said"), [(ROWS, 10, 0), (ROWS, 3, 1), (2, 0, 0)])
+def test_heights_between_far_rows_are_told(tmp_path, every, first, said):
+    """One row a period on the phase of the looks, and off it; many rows."""
+    run = make(tmp_path / "run", np.full(30, 0.05))
+    rows = (run / "history.csv").read_text().splitlines()
+    (run / "history.csv").write_text("\n".join([rows[0], *rows[1 + first :: every]]) + "\n")
+    (found,) = find([run], Periods())
+    assert sum("interpolated between rows" in note for note in found.notes) == said
