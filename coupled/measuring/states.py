@@ -24,6 +24,7 @@ from particles.measures import (
 )
 
 STRIP, TEMPERATURE_CELL, CONVECTION_CELL = 1.0, 4.0, 2.5  # mean diameters
+FEWEST_COLUMNS = 4  # two of them are the middle
 LOOKED_AT = 10  # frames for the extent of the bed
 SAME_PHASE = 0.01  # of a period, within which frames are of one phase
 PROFILES = ("packing", "coordination", "temperature", "spin_temperature")
@@ -199,7 +200,8 @@ def rolls_of(group: Group, periods: Periods) -> Rolls:
     Raises
     ------
     ParticleError
-        If the frames are not a whole number of periods apart, or fewer than two.
+        If the frames are not a whole number of periods apart, or fewer than two, or no grain is in the middle or none
+        at the sides.
     """
     sizes = [_extent(record, periods) for record in group.records]
     if not all(size is not None for size in sizes):
@@ -208,7 +210,7 @@ def rolls_of(group: Group, periods: Periods) -> Rolls:
     left, width, top = (f(size[k] for size in sizes) for f, k in ((min, 0), (max, 1), (max, 3)))
     size = CONVECTION_CELL * diameter
     cells = Cells(
-        left=left, width=width, height=top, columns=max(2, round(width / size)), rows=max(1, round(top / size)),
+        left=left, width=width, height=top, columns=max(FEWEST_COLUMNS, round(width / size)), rows=max(1, round(top / size)),
         period=(group.records[0].period[0], None),
     )  # fmt: skip
     fields, rolls = [], []
@@ -216,7 +218,11 @@ def rolls_of(group: Group, periods: Periods) -> Rolls:
         apart = periods_between_frames(record, periods)
         found = convection(_places(record, periods), cells)
         fields.append(found._replace(displacement=found.displacement / apart, roll=found.roll / apart))
-        rolls.append(float(fields[-1].roll.mean()))
+        known = np.isfinite(fields[-1].roll)
+        if known.any():
+            rolls.append(float(fields[-1].roll[known].mean()))
+    if not rolls:
+        raise ParticleError("no convection is seen: no period has grains both in the middle and at the sides")
     count = sum(found.count for found in fields)
     total = sum(np.nan_to_num(found.displacement) * found.count[..., None] for found in fields)
     with np.errstate(invalid="ignore"):

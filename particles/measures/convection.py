@@ -21,7 +21,7 @@ class Convection(NamedTuple):
         Displacements it is over.
     roll : (periods,)
         Of each period, rise in the middle half of the columns less rise in the outer half [m]: positive where
-        grains rise in the middle and sink along the sides.
+        grains rise in the middle and sink along the sides; not a number where either has none.
     """
 
     displacement: Floats
@@ -64,5 +64,5 @@ def convection(places: Iterable[Floats], cells: Cells) -> Convection:
 def _roll(column: np.ndarray, rise: Floats, columns: int) -> float:
     middle = np.abs(column + 0.5 - 0.5 * columns) < 0.25 * columns
     if middle.all() or not middle.any():
-        return 0.0
+        return float("nan")
     return float(rise[middle].mean() - rise[~middle].mean())

@@ -54,9 +54,9 @@ def test_rolls_are_found_wherever_the_seam_lies(seam):
 def test_a_shift_of_all_grains_is_a_constant_field_over_many_periods():
     rng = np.random.default_rng(1)
     place = np.column_stack([PERIOD * rng.random(300), 4.0 * rng.random(300)])
-    cells = Cells(width=PERIOD, height=100.0, columns=2, rows=1, period=(PERIOD, None))
+    cells = Cells(width=PERIOD, height=100.0, columns=4, rows=1, period=(PERIOD, None))
     found = convection((place + k * np.array([1.3, 0.25]) for k in range(40)), cells)
-    np.testing.assert_allclose(found.displacement, np.broadcast_to([1.3, 0.25], (1, 2, 2)), rtol=1e-12)
+    np.testing.assert_allclose(found.displacement, np.broadcast_to([1.3, 0.25], (1, 4, 2)), rtol=1e-12)
     assert found.count.sum() == 39 * 300 and len(found.roll) == 39
     np.testing.assert_allclose(found.roll, 0.0, atol=1e-13)
 
@@ -76,6 +76,13 @@ def test_a_cell_without_grains_has_no_number():
     cells = Cells(width=2.0, height=1.0, columns=2, rows=1)
     found = convection([np.array([[0.5, 0.5]]), np.array([[0.6, 0.5]])], cells)
     assert np.isnan(found.displacement[0, 1]).all() and found.count.tolist() == [[1, 0]]
+
+
+def test_no_roll_is_known_of_grains_that_stay_on_one_side():
+    cells = Cells(width=4.0, height=1.0, columns=4, rows=1)
+    places = np.array([[[0.5, 0.5], [3.5, 0.5]], [[0.5, 0.6], [3.5, 0.5]], [[1.9, 0.6], [3.5, 0.4]]])
+    # the first period has both at the sides; in the second one goes through the middle, and the other sinks
+    np.testing.assert_allclose(convection(places, cells).roll, [np.nan, 0.1])
 
 
 def test_convection_refuses_one_moment_and_other_grains():
