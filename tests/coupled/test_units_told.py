@@ -81,7 +81,7 @@ def test_errors_tell_units_in_si_alone(units: str, tmp_path: Path) -> None:
             load_scene(path, [wrong])
         said.append(str(refused.value))
     places = [(0.005 + 0.006 * (k % 15), 0.005 + 0.006 * (k // 15)) for k in range(49)]
-    piled = copy.deepcopy(sound.model_dump(exclude_none=True))
+    piled = copy.deepcopy(sound.model_dump(exclude_none=True)) | {"intruders": []}
     piled["grains"] |= {"layout": "list", "positions": [*places, (places[0][0] + 1e-4, places[0][1])]}
     with pytest.raises(LeitoError) as stopped:
         run_scene(Scene.model_validate(piled), out=tmp_path / "run", threads=1, progress=False)
