@@ -1,11 +1,11 @@
 # make demo         install what is missing, then settle a bed and press an elastic tube into it
-# make test         run the tests
+# make test         run the tests, in two processes
 # make test-debian13  run them on Debian 13, in a chroot (as root)
 # make bench        measure the speed
 # make bench-peers  measure it against other codes
 # make validate     compare with the sources' results (long)
 # make clean        remove caches; results in runs/ stay
-# Arguments go through ARGS, e.g. make test ARGS="-k scene" or make demo ARGS=--overwrite.
+# Arguments go through ARGS, e.g. make test ARGS="-k scene" or ARGS="-n 4" (-n 0: in one), make demo ARGS=--overwrite.
 
 PYTHON := .venv/bin/python
 
@@ -27,7 +27,7 @@ demo: install
 	@.venv/bin/leito run scenes/elastic_tube.toml $(or $(ARGS),$(if $(wildcard runs/elastic_tube/scene.toml),--resume))
 
 test: install-test
-	@$(PYTHON) -m pytest $(ARGS)
+	@$(PYTHON) -m pytest -n 2 --dist loadfile $(ARGS)
 
 # ARGS reaches the script through the environment.
 test-debian13:

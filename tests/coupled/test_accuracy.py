@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -108,8 +109,12 @@ def test_steps_stay_inside_the_limits(name: str, preset: str) -> None:
 @pytest.mark.parametrize("name", [name for name in shipping_scenes() if name != "bed_million"])
 @pytest.mark.parametrize("preset", ["draft", "reference"])
 def test_every_scene_passes_a_check(name: str, preset: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A million grains are left out for their time; but for their number they are those of `bed`."""
+    """A million grains are left out for their time; but for their number they are those of `bed`.
+
+    On one core: the compiled code for threads is tested elsewhere, and takes longer to compile than all the rest here.
+    """
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(os, "cpu_count", lambda: 1)
     rows = {(section, quantity): value for section, quantity, value in check_scene(load_scene(name, accuracy=preset))}
     assert rows["accuracy", "preset"] == preset
     ratio = [quantity for section, quantity in rows if section == "interface" and quantity.startswith("stiffness")]
