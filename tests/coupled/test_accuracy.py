@@ -111,7 +111,7 @@ def test_steps_stay_inside_the_limits(name: str, preset: str) -> None:
 def test_every_scene_passes_a_check(name: str, preset: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A million grains are left out for their time; but for their number they are those of `bed`.
 
-    On one core: the compiled code for threads is tested elsewhere, and takes longer to compile than all the rest here.
+    On one core: the compiled code for threads is tested elsewhere, and takes long to compile for every scene.
     """
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
