@@ -2,27 +2,34 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Every:
-    """Due at multiples of `interval` steps, and at the last step."""
+    """Due at the steps next to the multiples of `interval` steps, which need not be whole, and at the last step.
 
-    interval: int
+    What is due is at most half a step off its time after any number of steps: a phase of a motion stays that phase.
+    """
+
+    interval: float
     last: int
 
     @classmethod
     def seconds(cls, seconds: float, window: float, last: int) -> Every:
-        """The nearest whole number of steps of length `window` [s], at least one and at most `last`."""
-        return cls(max(1, round(min(seconds / window, last))), last)
+        """An interval [s] in steps of length `window` [s], at least one and at most `last`."""
+        return cls(max(1.0, min(seconds / window, last)), last)
 
     def due(self, step: int) -> bool:
-        return step % self.interval == 0 or step == self.last
+        return self.next(step - 1) == step
 
     def next(self, step: int) -> int:
         """The first due step after `step`."""
-        return min((step // self.interval + 1) * self.interval, self.last)
+        count = max(math.floor((step + 0.5) / self.interval) - 1, 0)  # at least one too early, whatever is rounded
+        while (due := math.floor(count * self.interval + 0.5)) <= step:
+            count += 1
+        return min(due, self.last)
 
 
 @dataclass(frozen=True)
