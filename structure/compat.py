@@ -11,8 +11,10 @@ difference outside is a name that `meshes` needs, which opens on nothing of ours
 from __future__ import annotations
 
 import logging
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from pathlib import Path
 
 import basix
 import dolfinx
@@ -27,6 +29,20 @@ from petsc4py import PETSc
 WAIT = 120
 _defaults = getattr(dolfinx.jit, "DOLFINX_DEFAULT_JIT_OPTIONS", None) or dolfinx.jit.DOLFINX_DEFAULT_JIT_PARAMETERS
 _defaults["timeout"] = (WAIT, _defaults["timeout"][1])
+
+
+def clear_broken_builds(cache: Path) -> None:
+    """Remove what a killed process began to compile in dolfinx's cache: all later ones would wait for it in vain.
+
+    A build under way is younger than the time for which others wait for it.
+    """
+    for begun in cache.glob("*.c"):
+        with suppress(OSError):  # another process clears it too
+            if not begun.with_suffix(".c.cached").exists() and time.time() - begun.stat().st_mtime > WAIT:
+                begun.unlink()
+
+
+clear_broken_builds(Path(str(_defaults["cache_dir"][0])).expanduser())
 
 CELLS = {"quadrilateral": basix.CellType.quadrilateral, "triangle": basix.CellType.triangle}
 

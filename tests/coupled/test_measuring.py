@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from typer.testing import CliRunner
 from coupled.cli.app import app
 from coupled.errors import LeitoError
 from coupled.measuring.findings import find
-from coupled.measuring.measure import draw_run, measure
+from coupled.measuring.measure import draw_run, measure, rows_told
 from coupled.measuring.record import Record
 from coupled.measuring.rises import Periods, height_over_floor, speed_over_floor
 from coupled.measuring.samples import groups_of
@@ -67,6 +68,19 @@ def test_rise_and_symmetry_of_gaussian_increments(found):
     second = 0.5 * 3.0**2 / 960
     assert (np.abs(transform.rate - expected)[known] < 1.5 * transform.half_width[known] + second).all()
     assert found["fast"].rises[0].deviations.lacks.startswith("all windows have the same mean")
+
+
+@pytest.mark.parametrize(("bars", "settled"), [(0.5, True), (-3.0, False)])
+def test_a_slope_that_still_turns_with_the_windows_is_told_as_not_settled(found, bars, settled):
+    one = found["slow"]
+    (rise,) = one.rises
+    last = next(each for each in reversed(rise.deviations.symmetries) if each.slope is not None)
+    slope = (last.slope + bars * last.half_width, last.half_width)
+    rows = rows_told([replace(one, rises=(replace(rise, deviations=replace(rise.deviations, slope=slope)),))])
+    told = {what: value for _, what, value in rows}
+    assert told[f"{rise.name}: slope of the symmetry, windows of {last.periods}"].startswith(f"{last.slope:.4g} +- ")
+    line = told[f"{rise.name}: slope of the symmetry, by a line over 1/n"]
+    assert line.startswith(f"{slope[0]:.4g} +- ") and line.endswith(", not settled") != settled
 
 
 def test_rolls_and_profiles_of_the_frames(found):
