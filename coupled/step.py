@@ -15,8 +15,8 @@ from coupled.scene.knobs import plain
 def with_step(scene: Scene) -> Scene:
     """The scene, its bed included, with numbers in place of factors (`plain`), of "auto" steps and of periods in steps.
 
-    An "auto" step is `time.safety` times the limit of any packing of its grains (`particles.packing_limit`), as before the
-    grains have come to rest there is no network whose limit could be taken, and under a structure it changes; or
+    An "auto" step is `time.safety` times the limit of any packing of its grains (`particles.packing_limit`), as before
+    the grains have come to rest there is no network whose limit could be taken, and under a structure it changes; or
     `time.step_fraction` times that of a settled sample of them, and of the coupling (`limits_before`).
 
     Raises

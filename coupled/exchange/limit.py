@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from structure import Scheme
 
-# Measured on the real code (docs/validation/stability.md, tests/coupled/test_stability_limits.py): with fixed partners the
-# predicted exchange is stable up to r = 2, with sub-cycling up to 1.0 to 2.9, by the dashpots and the substeps.
+# Measured on the real code (docs/validation/stability.md, tests/coupled/test_stability_limits.py): with fixed partners
+# the predicted exchange is stable up to r = 2, with sub-cycling up to 1.0 to 2.9, by the dashpots and the substeps.
 CONSERVING, CONSERVING_SUBCYCLED = 2.0, 1.0
 ITERATED = 100.0  # up to where the iterated exchange was measured; it is stable beyond
 OWN_STIFFNESS = np.concatenate([[0.0], np.logspace(-2.0, 6.0, 81)])  # omega^2 dt^2 of a mode of the structure

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from coupled.errors import LeitoError
 from coupled.output import history
-from coupled.output.folder import SCENE, SUMMARY
+from coupled.output.folder import SCENE, SUMMARY, require_folder
 from coupled.output.frames import read_frame
 from coupled.scene.grains import USUAL_WALLS
 from coupled.scene.units import in_units
@@ -69,8 +69,7 @@ class Record:
     """
 
     def __init__(self, folder: Path) -> None:
-        if not folder.is_dir():
-            raise LeitoError(f"{folder}: there is no such folder; give the folder of a run")
+        require_folder(folder)
         if not (folder / SCENE).exists() or not (folder / history.NAME).exists():
             raise LeitoError(f"{folder} holds no run ({SCENE} and {history.NAME}); give the folder of a run")
         self.folder = folder

@@ -14,7 +14,7 @@ from coupled.campaign.statistics import Interval, confidence
 from coupled.errors import LeitoError
 from coupled.measuring.record import Floats, Record
 from coupled.output import history
-from coupled.output.folder import SCENE
+from coupled.output.folder import SCENE, require_folder
 
 NOT_COMPARED = ("seed", "title", "output", "quantities")  # keys that make no other scene
 
@@ -51,8 +51,7 @@ def groups_of(folders: Sequence[Path]) -> list[Group]:
 
 
 def _runs_in(folder: Path) -> list[Path]:
-    if not folder.is_dir():
-        raise LeitoError(f"{folder}: there is no such folder; give folders of runs or of an ensemble")
+    require_folder(folder, "give folders of runs or of an ensemble")
     if (folder / SCENE).exists():
         return [folder]
     found = sorted(path.parent for path in folder.rglob(SCENE) if (path.parent / history.NAME).exists())

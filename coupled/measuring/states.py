@@ -210,9 +210,13 @@ def rolls_of(group: Group, periods: Periods) -> Rolls:
     left, width, top = (f(size[k] for size in sizes) for f, k in ((min, 0), (max, 1), (max, 3)))
     size = CONVECTION_CELL * diameter
     cells = Cells(
-        left=left, width=width, height=top, columns=max(FEWEST_COLUMNS, round(width / size)), rows=max(1, round(top / size)),
+        left=left,
+        width=width,
+        height=top,
+        columns=max(FEWEST_COLUMNS, round(width / size)),
+        rows=max(1, round(top / size)),
         period=(group.records[0].period[0], None),
-    )  # fmt: skip
+    )
     fields, rolls = [], []
     for record in group.records:
         apart = periods_between_frames(record, periods)

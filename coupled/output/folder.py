@@ -100,6 +100,19 @@ def _clear(path: Path) -> None:
             place.unlink()
 
 
+def require_folder(path: Path, remedy: str = "give the folder of a run") -> None:
+    """Refuse what is no folder.
+
+    Raises
+    ------
+    LeitoError
+        With the remedy.
+    """
+    if not path.is_dir():
+        lacks = f"{path} is a file" if path.exists() else f"{path}: there is no such folder"
+        raise LeitoError(f"{lacks}; {remedy}")
+
+
 def finished(path: Path, scene: Scene) -> bool:
     """Whether the run of a scene in a folder has nothing left to do."""
     if not (path / SUMMARY).exists():

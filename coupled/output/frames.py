@@ -140,7 +140,7 @@ def _refer(element: ET.Element, data: h5py.Dataset, path: Path) -> None:
 
 
 def _in_space(values: NDArray[Any]) -> NDArray[Any]:
-    """Single precision where it holds them; vectors get a third component, which ParaView needs to take them as such."""
+    """Single precision where it holds them; vectors get a third component, without which ParaView sees none."""
     array = np.asarray(values)
     if array.dtype.kind == "f" and not np.abs(array).max(initial=0.0) > LARGEST_SINGLE:
         array = array.astype(np.float32)

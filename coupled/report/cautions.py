@@ -108,7 +108,8 @@ def _overdamped(body: ElasticStructure) -> str:
         return said
     lowest = float(body.frequencies(1)[0])
     if lowest > hertz:
-        return f"{said}: all modes of this structure, whose lowest is at {lowest:.4g} Hz: it creeps back instead of swinging"
+        modes = f"all modes of this structure, whose lowest is at {lowest:.4g} Hz"
+        return f"{said}: {modes}: it creeps back instead of swinging"
     return f"{said}; the lowest of this structure is at {lowest:.4g} Hz"
 
 

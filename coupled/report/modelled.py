@@ -5,7 +5,7 @@ from __future__ import annotations
 from coupled.scene import Scene
 
 FREE_GRAINS, FRICTION, ROLLING, DAMPING = "free grains", "friction", "rolling resistance", "global damping"
-WALLS, PERIODIC, SHAKING, ROWS, GRAVITY = "walls", "periodic sides", "shaken walls", "rows of fixed grains", "gravity"
+WALLS, PERIODIC, SHAKING, ROWS, GRAVITY = "walls", "periodic sides", "shaken walls", "rows of grains", "gravity"
 HERTZ, FOLLOWING, MATERIALS = "Hertz's spring", "a tangential spring that follows the normal one", "materials"
 VERLET, INTRUDERS, STRUCTURE = "velocity Verlet", "intruders", "structure"
 

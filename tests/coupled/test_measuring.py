@@ -163,6 +163,9 @@ def test_a_run_that_lacks_something_is_measured_for_the_rest_and_says_what(tmp_p
 def test_refusals(tmp_path):
     with pytest.raises(LeitoError, match="no such folder"):
         groups_of([tmp_path / "nowhere"])
+    (tmp_path / "file").write_text("")
+    with pytest.raises(LeitoError, match="file is a file; give folders of runs"):
+        groups_of([tmp_path / "file"])
     (tmp_path / "empty").mkdir()
     with pytest.raises(LeitoError, match="holds no run"):
         groups_of([tmp_path / "empty"])
