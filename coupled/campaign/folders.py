@@ -11,7 +11,7 @@ from coupled.output.folder import SCENE, SUMMARY, finished, require_same_scene
 from coupled.scene import Scene
 from coupled.scene.knobs import plain
 
-ASKED = ("quantities", "bed.quantities")  # they are read out of a finished run, and do not shape it
+SHAPELESS = ("title", "bed.title", "quantities", "bed.quantities")  # a run is the same with others
 
 
 def require_own(task: Task) -> None:
@@ -23,7 +23,7 @@ def require_own(task: Task) -> None:
         Naming the key.
     """
     if (task.folder / SCENE).exists():
-        require_same_scene(task.folder, _numbered(task.scene), free=ASKED)
+        require_same_scene(task.folder, _numbered(task.scene), free=SHAPELESS)
 
 
 def begun(task: Task) -> bool:

@@ -19,10 +19,11 @@ def large_deviation(one: Findings) -> Figure | None:
         return None
     found = rise.deviations
     figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH + 2.0, 4.2), layout="constrained")
-    tones = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, len(found.curves)))
-    for curve, tone in zip(found.curves, tones, strict=True):
+    shades = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, len(found.lengths)))
+    tones = dict(zip(found.lengths, shades, strict=True))
+    for curve in found.curves:  # not of every length
         left.errorbar(
-            curve.v, curve.rate, curve.half_width, fmt="o-", ms=3, lw=0.8, elinewidth=0.6, color=tone,
+            curve.v, curve.rate, curve.half_width, fmt="o-", ms=3, lw=0.8, elinewidth=0.6, color=tones[curve.periods],
             label=f"{curve.periods} period{'s' * (curve.periods > 1)}",
         )  # fmt: skip
     if np.isfinite(found.limit.rate).sum() > 1:
@@ -58,11 +59,11 @@ def _transform_label(found: LargeDeviations) -> str:
     return f"Legendre transform, n = {found.settled}"
 
 
-def _draw_symmetry(axes: Axes, one: Findings, rise: Rise, tones: np.ndarray) -> None:
+def _draw_symmetry(axes: Axes, one: Findings, rise: Rise, tones: dict[int, np.ndarray]) -> None:
     found = rise.deviations
-    for each, tone in zip(found.symmetries, tones, strict=True):
+    for each in found.symmetries:
         if each.points is not None:
-            points = each.points
+            points, tone = each.points, tones[each.periods]
             axes.errorbar(points.v, points.ratio, points.half_width, fmt="o", ms=3, elinewidth=0.6, color=tone)
             axes.plot([0.0, points.v.max()], [0.0, each.slope * points.v.max()], "-", lw=0.8, color=tone)
     seen = [each for each in found.symmetries if each.slope is not None]

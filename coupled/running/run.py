@@ -7,6 +7,7 @@ import json
 import os
 import sys
 import time
+import traceback
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,7 @@ from mpi4py import MPI
 
 from coupled import bed as beds
 from coupled.build import Built, build
-from coupled.errors import Interrupted
+from coupled.errors import Interrupted, is_sentence
 from coupled.output import checkpoint
 from coupled.output.folder import BEFORE_FAILURE, SUMMARY, RunFolder, finished, open_folder
 from coupled.output.lock import only_process
@@ -227,11 +228,7 @@ class Run:
         stepping, started = record.stepping, time.perf_counter()
         free = model.particles.grains.n_free if model.particles is not None else 0
         peaks = record.peaks | {"particle_steps": free * model.steps_done * model.substeps}
-        pictures = []
-        if self.scene.output.figures:
-            from coupled.report.figures import plot_run  # matplotlib is not loaded for a run without figures
-
-            pictures = plot_run(self.folder.path)
+        pictures = self._draw() if self.scene.output.figures else []
         record.seconds["output"] += time.perf_counter() - started
         summary = summarise(self.built, seen, record.first, peaks, record.seconds | model.seconds, stepping)
         summary["quantities"], unknown = known_of(self.scene, self.folder.path)
@@ -242,6 +239,18 @@ class Run:
         text = tell(summary, pictures, self.folder.path, self.scene)
         record.log(text)
         print(text, flush=True)
+
+    def _draw(self) -> list[Path]:
+        """Draw the figures. A picture that fails must not cost the run what it came to."""
+        from coupled.report.figures import plot_run  # matplotlib is not loaded for a run without figures
+
+        try:
+            return plot_run(self.folder.path)
+        except Exception as error:
+            self.record.log("".join(traceback.format_exception(error)))
+            what = str(error) if is_sentence(error) else f"{type(error).__name__}: {error}; a defect of the program"
+            self.record.say([f"not all figures are drawn: {what}"])
+            return sorted(self.folder.file("figures").glob("*.png"))
 
 
 def _tell_again(folder: RunFolder, scene: Scene) -> None:

@@ -70,7 +70,7 @@ def test_finished_runs_are_reused_and_begun_ones_taken_up(grains: Path, tmp_path
     (done,) = run_all([first], progress=False)
     before = (first.folder / "summary.json").stat().st_mtime_ns
     second = task(grains, tmp_path / "second", "grains.seed=2")
-    again, new = run_all([first, second], progress=False)
+    again, new = run_all([task(grains, tmp_path / "first", "title=Renamed"), second], progress=False)
     assert (again.status, new.status) == ("done", "done")
     assert again.wall_seconds == done.wall_seconds
     assert (first.folder / "summary.json").stat().st_mtime_ns == before, "not computed anew"

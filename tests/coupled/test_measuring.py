@@ -196,6 +196,8 @@ def test_many_samples_are_drawn_whole_at_the_quietest_phase(tmp_path):
     assert swung.deviations.moments[0].variance.value == pytest.approx(1.0, rel=0.02)  # up and down by 1, in turns
     assert [curve.periods for curve in swung.deviations.curves] == [2, 4, 8, 16]  # no single rise is near the mean
     assert swung.rate.mean == pytest.approx(rise.rate.mean, abs=2.0 * 0.5 / 40)
+    _, written = measure([tmp_path / "all"], out=tmp_path / "swung", periods=Periods())
+    assert tmp_path / "swung" / "large_deviation.png" in written
     _, written = measure([tmp_path / "all"], out=tmp_path / "out", periods=Periods(phase=None))
     assert tmp_path / "out" / "windows.csv" in written
     (numbers,) = json.loads((tmp_path / "out" / "measures.json").read_text())

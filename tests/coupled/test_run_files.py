@@ -208,3 +208,21 @@ def test_stop_at_rest_ends_a_run_early(tmp_path: Path) -> None:
     run_scene(scene, out=tmp_path / "run", threads=1, progress=False)
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert summary["simulated_seconds"] < 5.0
+
+
+def test_a_picture_that_fails_costs_a_finished_run_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def broken(folder: Path) -> list[Path]:
+        (folder / "figures").mkdir()
+        (folder / "figures" / "first.png").write_text("")
+        raise ValueError("three colours for four curves")
+
+    monkeypatch.setattr("coupled.report.figures.plot_run", broken)
+    scene = load_scene(write_template("grains", tmp_path / "grains.toml"), ["time.duration=0.01"])
+    run_scene(scene, out=tmp_path / "run", threads=1, progress=False)
+    told = capsys.readouterr()
+    assert "not all figures are drawn: ValueError: three colours for four curves; a defect of the program" in told.err
+    assert "figures/first.png" in told.out
+    assert "in broken" in (tmp_path / "run" / "log.txt").read_text(), "the place of the defect"
+    assert json.loads((tmp_path / "run" / "summary.json").read_text())["steps"] == 200

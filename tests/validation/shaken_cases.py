@@ -22,6 +22,8 @@ LIGHT, HEAVY = "intruders.0.density=0.1061033", "intruders.0.density=0.9549297" 
 LONGER = (  # 200 periods and a frame in ten of them, too
     "shaking.period=4.743416", "time.duration=978.68", "quantities.1.start=741.51", "output.frames_per_second=0.02108185",
 )  # fmt: skip
+LONG_CASE = "no_friction_long"
+LONG = ("time.duration=3982.847", "output.frames_per_second=0.0")  # 1000 periods
 MOST = 50  # seeds looked for
 WINDOW = 10  # periods over which a height is averaged
 
@@ -55,6 +57,13 @@ CASES = (
     ),
     Case(name="smooth_walls", title="smooth walls", scene="shaken_smooth_walls"),
     Case(name="no_friction", title="no friction", scene="shaken_no_friction"),
+    Case(
+        name=LONG_CASE,
+        title="no friction, 1000 periods",
+        scene="shaken_no_friction",
+        overrides=LONG,
+        gammas=ALL_GAMMAS,
+    ),
     Case(name="periodic_25000", title="periodic, 25 000 steps", scene="shaken_periodic"),
     Case(name="periodic_30000", title="periodic, 30 000 steps", scene="shaken_periodic", overrides=LONGER),
 )

@@ -12,7 +12,7 @@ matplotlib.use("Agg")  # no screen is needed
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from shaken_cases import CASES, GAMMAS, Ascent
+from shaken_cases import CASES, GAMMAS, LONG_CASE, Ascent
 from shaken_words import WHOLE, Found
 
 from coupled.campaign.statistics import confidence
@@ -88,7 +88,8 @@ def _densities(found: Found, titles: dict[str, str], folder: Path) -> str:
 
 def _rises(found: Found, titles: dict[str, str], folder: Path) -> str:
     figure, axes = plt.subplots(figsize=(7.5, 4.2), layout="constrained")
-    for place, (name, title) in enumerate(titles.items()):
+    shown = {name: title for name, title in titles.items() if name != LONG_CASE}
+    for place, (name, title) in enumerate(shown.items()):
         rises = [(float(gamma), [a.climbed(WHOLE) for a in ascents]) for gamma, ascents in found[name].items()]
         aside = 0.006 * (place - 3)  # so that bars do not hide each other
         colour = f"C{place}"

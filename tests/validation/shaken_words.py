@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from shaken_cases import Ascent, paired
+from shaken_cases import LONG_CASE, Ascent, paired
 
 from coupled.campaign.statistics import confidence
 
 STILL = 2.5  # the intruder's radius: a change of height below it is none
 DEEP = 10.0  # about as far below the surface as the middle of the rolls, round which it is to go
-WHOLE = 200.0  # periods
+WHOLE, LONGEST = 200.0, 1000.0  # periods
 SLOWEST = 5.0 * WHOLE  # of a fall that is told
 UP, NONE, DOWN, NOT_UP, MORE = (
     (STILL, math.inf),
@@ -53,7 +53,7 @@ def interval(values: Sequence[float]) -> str:
 
 def statements(found: Found) -> list[Statement]:
     """All of them for which there are samples."""
-    every = [*_ways(found), *_orders(found), *_ends(found)]
+    every = [*_ways(found), *_sinkings(found), *_orders(found), *_ends(found)]
     return [statement for statement in every if statement.values]
 
 
@@ -78,6 +78,18 @@ def _ways(found: Found) -> Iterator[Statement]:
                     values=values,
                     allowed=allowed,
                 )
+
+
+def _sinkings(found: Found) -> Iterator[Statement]:
+    """The source does not say for how long it shook without friction."""
+    for gamma, ascents in found.get(LONG_CASE, {}).items():
+        yield Statement(
+            case=LONG_CASE,
+            source="sinks at any Gamma",
+            what=f"rise in 1000 periods, Gamma = {gamma}",
+            values=tuple(ascent.climbed(LONGEST) for ascent in ascents),
+            allowed=DOWN,
+        )
 
 
 def _orders(found: Found) -> Iterator[Statement]:
