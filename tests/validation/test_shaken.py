@@ -157,10 +157,10 @@ def sinking(found: Found) -> str:
             if falls
             else ""
         )
-        told.append(f"at Gamma = {gamma} {down} of {len(rises)}{exponential}, and {up} rise by more")
-    return (
-        f"Without friction, within 1000 periods, come down by more than the radius: {'; '.join(told)}." if told else ""
-    )
+        told.append(f"{gamma}: {down} of {len(rises)} down{exponential}, {up} up")
+    if not told:
+        return ""
+    return f"Without friction, moved by more than the radius within 1000 periods, by Gamma: {'; '.join(told)}."
 
 
 def rises_by_step() -> dict[str, list[float]]:
