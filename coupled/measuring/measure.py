@@ -72,25 +72,13 @@ def rows_told(found: Sequence[Findings]) -> list[tuple[str, ...]]:
                 what = f"{rise.name}: variance per period, windows of {longest.periods}"
                 rows.append((one.group.label, what, f"{spread:.4g} +- {half:.2g}"))
             rows += [(one.group.label, f"{rise.name}: slope of the symmetry, {what}", value)
-                     for what, value in _slopes(rise.deviations)]  # fmt: skip
+                     for what, value in rise.deviations.slopes]  # fmt: skip
         if one.rolls is not None:
             rows.append((one.group.label, "convection, middle over sides per period", _interval(told(one.rolls.roll))))
         if one.profiles is not None:
             lower = one.profiles.mean["packing"][: max(1, len(one.profiles.y) // 2)]
             rows.append((one.group.label, "packing fraction of the lower half", f"{np.nanmean(lower):.4g}"))
     return rows
-
-
-def _slopes(found: LargeDeviations) -> Iterator[tuple[str, str]]:
-    """That of the longest windows with a left tail, and whether the line to endless ones leaves its bar."""
-    seen = [each for each in found.symmetries if each.slope is not None]
-    if seen:
-        last = seen[-1]
-        yield f"windows of {last.periods}", f"{last.slope:.4g} +- {last.half_width:.2g}"
-        if found.slope is not None:
-            slope, half = found.slope
-            settled = abs(slope - last.slope) <= last.half_width
-            yield "by a line over 1/n", f"{slope:.4g} +- {half:.2g}{'' if settled else ', not settled'}"
 
 
 def _interval(found: dict[str, Any]) -> str:

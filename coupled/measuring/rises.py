@@ -71,6 +71,23 @@ class LargeDeviations:
     slope: tuple[float, float] | None = None
     lacks: str = ""
 
+    @property
+    def slopes(self) -> list[tuple[str, str]]:
+        """The slope of the symmetry in words: of the longest windows with a left tail, and of the line to endless ones.
+
+        Where the line leaves the bar of those windows, the slope has not settled.
+        """
+        seen = [each for each in self.symmetries if each.slope is not None]
+        if not seen:
+            return []
+        last = seen[-1]
+        told = [(f"windows of {last.periods}", f"{last.slope:.4g} +- {last.half_width:.2g}")]
+        if self.slope is not None:
+            slope, half = self.slope
+            settled = abs(slope - last.slope) <= last.half_width
+            told.append(("by a line over 1/n", f"{slope:.4g} +- {half:.2g}{'' if settled else ', not settled'}"))
+        return told
+
 
 @dataclass(frozen=True, kw_only=True)
 class Rise:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from coupled.measuring.findings import Findings
@@ -66,11 +64,8 @@ def _draw_symmetry(axes: Axes, one: Findings, rise: Rise, tones: dict[int, np.nd
             points, tone = each.points, tones[each.periods]
             axes.errorbar(points.v, points.ratio, points.half_width, fmt="o", ms=3, elinewidth=0.6, color=tone)
             axes.plot([0.0, points.v.max()], [0.0, each.slope * points.v.max()], "-", lw=0.8, color=tone)
-    seen = [each for each in found.symmetries if each.slope is not None]
-    if seen:
-        slope, half = found.slope if found.slope is not None else (seen[-1].slope, seen[-1].half_width)
-        told = f"slope {slope:.3g} +- {half:.2g}" if math.isfinite(half) else f"slope {slope:.3g}"
-        axes.set_title(told, fontsize=9)
+    if found.slopes:
+        axes.set_title("slope, " + "; ".join(f"{what}: {value}" for what, value in found.slopes), fontsize=8)
         axes.set(xlabel=length([one], "|v|"), ylabel="ln(P(v)/P(-v))/n")
         axes.grid(alpha=0.25)
     else:
